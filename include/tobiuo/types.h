@@ -30,10 +30,7 @@ typedef enum tobi_smoothing {
 } tobi_smoothing;
 typedef enum tobi_friction { TOBI_SLIP, TOBI_NO_SLIP } tobi_friction;
 typedef enum tobi_compression {
-    TOBI_COMPRESS_NONE,
-    TOBI_COMPRESS_ZLIB,
-    TOBI_COMPRESS_LZ4,
-    TOBI_ASCII
+    TOBI_COMPRESS_NONE, TOBI_COMPRESS_ZLIB, TOBI_COMPRESS_LZ4, TOBI_ASCII
 } tobi_compression;
 
 typedef enum tobi_krylov { TOBI_CG, TOBI_BICGSTAB, TOBI_GMRES } tobi_krylov;
@@ -181,6 +178,7 @@ typedef struct tobi_solid_def {
     int    liquid_friction;           /* tobi_friction, of fluids beside it                           */
     double damping;                   /* 1/s, velocities decay like exp(-damping t)                   */
     int    seeding;                   /* tobi_seeding                                                 */
+    const char *clamped_to;           /* name of the body that holds what starts in it or near; NULL = none */
     int    bonded;                    /* 1: sticks to other bonded solids that it touches              */
     double color[3];                  /* RGB, 0 to 255, in pictures; all -1 = by its speed            */
     double core_color[3];             /* RGB of what was below the surface at the start; all -1 = color */

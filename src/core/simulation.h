@@ -35,6 +35,7 @@ typedef struct tobi_simulation {
     double acceleration_change;     /* m/s2, largest of the run in the liquid of the start, without gravity */
     double acceleration_most[3];    /* m/s2, of the whole run with gravity; 0: gravity alone  */
     double time, dt;                /* s; dt of the last step                                */
+    double way;                     /* s after `time`, where substeps have put bodies with a motion */
     int64_t step;
     int64_t body_first_id;          /* of the particles of bodies                            */
     int64_t next_id;                /* ids given so far to particles of all systems and bodies are below */

@@ -6,7 +6,8 @@
 
 struct tobi_system;
 
-/* m3 now; 1/kg: the answer of a point to a force, 0: it does not move; 1 where liquid sticks, else 0. */
+/* m3 now, 0: in a body that the liquid sees anyway; 1/kg: the answer of a point to a force, 0: it does not
+   move; 1 where liquid sticks, else 0. */
 typedef struct tobi_soft_size { float volume, inverse_mass, grip; } tobi_soft_size;
 
 typedef struct tobi_soft {

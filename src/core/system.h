@@ -17,7 +17,10 @@ typedef struct tobi_fluid {
 
 typedef struct tobi_solid {
     char name[64];
-    tobi_solid_def def;             /* its density is the one used: from the mass, if that was given */
+    tobi_solid_def def;             /* its density is the one used: from the mass, if that was given;
+                                       clamped_to is only whether it is there */
+    char clamped_to[64];            /* body that holds it                                    */
+    int clamp;                      /* its number, from the start on; -1: none               */
 } tobi_solid;
 
 typedef struct tobi_system {

@@ -144,7 +144,7 @@ static void add_contact(const tobi_contact *k, const tobi_contacts *c, double dt
 }
 
 /* Solves the 6x6 system a x = b by Gauss with pivots; leaves x in b. */
-static void eliminate(double a[6][6], double b[6])
+void tobi_contact_eliminate(double a[6][6], double b[6])
 {
     for (int k = 0; k < 6; k++) {
         int best = k;
@@ -195,7 +195,7 @@ static void sum_contacts(tobi_contacts *c, int width, double dt, double *total, 
 }
 
 /* M^-1 as a whole, joints included. */
-static void find_inverse(const tobi_rigid *r, double inverse[6][6])
+void tobi_contact_inverse(const tobi_rigid *r, double inverse[6][6])
 {
     double shift[3], turn[3][3], joint[6];
     tobi_rigid_inverse(r, shift, turn);
@@ -212,7 +212,7 @@ static void find_inverse(const tobi_rigid *r, double inverse[6][6])
 static void predict(tobi_contacts *c, const tobi_rigid *r, double dt, tobi_exec *x)
 {
     double inverse[6][6], total[SUMS], a[6][6], b[6];
-    find_inverse(r, inverse);
+    tobi_contact_inverse(r, inverse);
     sum_contacts(c, SUMS, dt, total, x);
     memcpy(b, c->velocity, sizeof c->velocity);
     memcpy(b + 3, c->spin, sizeof c->spin);
@@ -223,7 +223,7 @@ static void predict(tobi_contacts *c, const tobi_rigid *r, double dt, tobi_exec 
             b[i] += inverse[i][j]*total[MATRIX + j];
         }
     }
-    eliminate(a, b);
+    tobi_contact_eliminate(a, b);
     memcpy(c->velocity, b, sizeof c->velocity);
     memcpy(c->spin, b + 3, sizeof c->spin);
 }
@@ -270,7 +270,7 @@ double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_ste
     if (!moves) return moved;
     /* What the impulses really were. */
     double inverse[6][6];
-    find_inverse(r, inverse);
+    tobi_contact_inverse(r, inverse);
     sum_contacts(c, 6, step->dt, total, x);
     for (int a = 0; a < 3; a++) {
         c->velocity[a] = velocity[a] - vec3_dot(inverse[a], total) - vec3_dot(inverse[a] + 3, total + 3);

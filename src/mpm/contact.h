@@ -65,6 +65,7 @@ typedef struct tobi_contact_step {
     double dt, before;               /* s, of this step and the one before, 0 in the first         */
     double whole;                    /* s, of the world's step, which may be several of these      */
     int system;                      /* whose load on the body this is                             */
+    int body;                        /* its number                                                 */
     double radius;                   /* m, half a particle spacing                               */
     double reach;                    /* m, how deep inside a body a particle is still found      */
     double margin;                   /* m, how far from touching a particle is looked at         */
@@ -100,3 +101,6 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
    take other velocities from it than they gave, and momentum would be lost. */
 void tobi_contact_shift(tobi_contacts *c, tobi_particles *p);
 void tobi_contact_free(tobi_contacts *c);
+/* M^-1 of a body, joints to the domain included; and the 6x6 system a x = b, with x left in b. */
+void tobi_contact_inverse(const tobi_rigid *r, double inverse[6][6]);
+void tobi_contact_eliminate(double a[6][6], double b[6]);

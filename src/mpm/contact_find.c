@@ -284,13 +284,14 @@ static int touch_blade(const pose *at, const double x[3], const double local[3],
 static int64_t list_chunk(const pose *at, const tobi_particles *p, int64_t chunk, double far,
                           const double low[3], const double high[3], candidate *out)
 {
+    const mpm_fields *f = mpm_fields_of(p);
     int64_t n = 0;
     for (int64_t i = chunk*TOBI_BLOCK; i < (chunk + 1)*TOBI_BLOCK && i < p->count; i++) {
         const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
         double arm[3], local[3];
         int outside = 0;
         for (int a = 0; a < at->step->dimension; a++) outside |= x[a] < low[a] || x[a] > high[a];
-        if (outside) continue;
+        if (outside || (f->clamp && fabsf(f->clamp[i].w) == (float)(1 + at->step->body))) continue;
         approach(at, x, arm, local);
         const double clear = find_outside(at, x, local);
         if (clear < far) out[n++] = (candidate){(int32_t)i, 0, (float)(clear*(1 - 1e-6)), -1};

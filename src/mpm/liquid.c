@@ -20,7 +20,7 @@ static void find_sizes(const void *view, int64_t begin, int64_t end)
     for (int64_t i = begin; i < end; i++) {
         const int fixed = m->material[s->particles.fluid[i]].model == TOBI_STATIONARY;
         const double ratio = fmin(fmax(mpm_volume_ratio(&v, i), LEAST), MOST);
-        m->size[i] = (tobi_soft_size){ (float)(f->strain[i].c[0].w*ratio),
+        m->size[i] = (tobi_soft_size){ mpm_clamp_hides(s, i) ? 0 : (float)(f->strain[i].c[0].w*ratio),
                                        fixed ? 0 : 1/f->strain[i].c[2].w,
                                        s->solids[s->particles.fluid[i]].def.liquid_friction == TOBI_NO_SLIP };
     }

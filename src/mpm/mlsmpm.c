@@ -141,6 +141,8 @@ static tobi_status create(tobi_system *s, tobi_error *err)
         m->viscous_dt = fmin(m->viscous_dt, mpm_material_viscous_dt(d, m->cell));
     }
     bind_particles(s, m);
+    m->touch.clamp = &m->clamp;
+    m->clamp.longest = mpm_material_dt(s, &m->def, m->sound, 0);
     m->touch.cut = m->blades ? &m->cut : NULL;
     m->touch.kernels = mpm_pack_kernels_for(s->sim->exec.isa);
     return TOBI_OK;
@@ -387,6 +389,8 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     particles_to_grid(s, m, &clock);
     mpm_energy_add_transfer(s, m);
     solve_grid(s, m, &clock);
+    TOBI_TRY(mpm_clamp_hold(&m->clamp, s, &m->grid, &m->view, m->fresh, err));
+    m->memory.body_work += m->clamp.work;
     TOBI_TRY(touch_bodies(s, m, &clock, err));
     if (m->blades) m->memory.friction += mpm_cut_finish(&m->cut, &s->sim->exec, &m->grid, s->dt);
     mpm_energy_add_nodes(s, m);
@@ -505,6 +509,7 @@ static void free_state(void *state)
     if (!m) return;
     mpm_grid_free(&m->grid);
     mpm_touch_free(&m->touch);
+    mpm_clamp_free(&m->clamp);
     mpm_cut_free(&m->cut);
     tobi_array_free(m->size);
     free(m);

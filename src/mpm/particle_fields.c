@@ -1,6 +1,7 @@
 /* The fields of the material point method: how they start, what of them is shown in results. Drawback: volume
    and mass of a particle hide in unused components of its strain. */
 #include "mpm/particle_fields.h"
+#include "mpm/clamp.h"
 
 #define ROW(...) TOBI_FIELD_ROW(mpm_fields, __VA_ARGS__)
 static const tobi_field fields[] = { MPM_FIELDS(ROW) };
@@ -19,6 +20,8 @@ unsigned mpm_needs(const tobi_system *s, int full)
     (void)full;
     for (int k = 0; k < s->sim->body_count; k++)
         if (s->sim->bodies[k].blade) needs |= MPM_NEED_BLADES;
+    for (int k = 0; k < s->solid_count; k++)
+        if (s->solids[k].def.clamped_to) needs |= MPM_NEED_CLAMP;
     return needs;
 }
 
@@ -34,6 +37,7 @@ void mpm_place(tobi_system *s, int64_t i, const tobi_start *start)
     f->strain[i].c[0].w = (float)start->volume;
     f->strain[i].c[2].w = (float)start->mass;
     f->rest[i] = (tobi_float4){(float)x.x, (float)x.y, (float)x.z, (float)start->core};
+    mpm_clamp_place(s, i);
 }
 
 double mpm_mass(const tobi_system *s, int64_t i) { return mpm_fields_of(&s->particles)->strain[i].c[2].w; }

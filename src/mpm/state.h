@@ -1,5 +1,6 @@
 /* What the material point method keeps between steps. */
 #pragma once
+#include "mpm/clamp.h"
 #include "mpm/cut.h"
 #include "mpm/grid.h"
 #include "mpm/kernels.h"
@@ -28,6 +29,7 @@ typedef struct mlsmpm {
     tobi_mlsmpm_def def;
     mpm_view view;
     mpm_grid grid;
+    mpm_clamp clamp;
     mpm_touch touch;
     mpm_cut cut;
     const mpm_kernels *kernels;

@@ -3,6 +3,7 @@
 #include "mpm/touch.h"
 #include "base/error.h"
 #include "geom/vec3.h"
+#include "mpm/clamp.h"
 #include "mpm/feel.h"
 #include "mpm/spline.h"
 #include <math.h>
@@ -327,6 +328,7 @@ static tobi_status touch_body(mpm_touch *t, tobi_system *s, tobi_body *b, const 
 {
     tobi_contacts *c = &t->contacts;
     TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->sim->exec, err));
+    if (b->rigid.kind != TOBI_PRESCRIBED) mpm_clamp_velocity(t->clamp, step->body, c->velocity, c->spin);
     t->edge_first = c->count;
     t->ways = g->levels > 1 ? 1 << g->levels : 2;
     if (b->blade && b->edge_resistance > 0 && b->rigid.cut > 0)
@@ -359,7 +361,9 @@ tobi_status mpm_touch_bodies(mpm_touch *t, tobi_system *s, const mpm_grid *g, co
     TOBI_TRY(tobi_contact_begin(&t->contacts, &s->particles, drift, &s->sim->exec, err));
     for (int k = 0; k < s->sim->body_count; k++) {
         if (s->sim->bodies[k].is_absent) continue;
-        TOBI_TRY(touch_body(t, s, &s->sim->bodies[k], g, v, step, err));
+        tobi_contact_step own = *step;
+        own.body = k;
+        TOBI_TRY(touch_body(t, s, &s->sim->bodies[k], g, v, &own, err));
         s->info.contacts += tobi_contact_finish(&t->contacts, &s->particles, &s->sim->bodies[k], step,
                                                 &t->far, &t->work, &s->sim->exec);
     }

@@ -8,6 +8,7 @@
 
 typedef struct mpm_touch {
     tobi_contacts contacts;            /* particles of solids that touch bodies                   */
+    const struct mpm_clamp *clamp;     /* what has been done to bodies already: the caller's   */
     mpm_cut *cut;                      /* whose faces push at the same time, NULL = no blades: the caller's */
     int64_t count;                     /* entries: contacts times nodes each feels                */
     uint32_t *node;                    /* place in the nodes' array                               */

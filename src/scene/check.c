@@ -332,6 +332,7 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     tobi_check_probes(scene, source);
     tobi_lines_check(scene, source);
     tobi_joint_list_check(scene, source);
+    tobi_clamps_check(scene, source);
     tobi_output_check(scene, source);
     tobi_references_check(scene, source);
 }

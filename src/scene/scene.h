@@ -96,6 +96,8 @@ json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_pl
 /* lines.c: the key lines of the scene, which is `of`. */
 tobi_status tobi_lines_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);
 void tobi_lines_check(const tobi_scene *scene, tobi_source *source);
+/* The bodies that hold solids. clamps.c */
+void tobi_clamps_check(const tobi_scene *scene, tobi_source *source);
 json_t *tobi_lines_write_json(const tobi_scene *scene);      /* NULL: no memory */
 /* joint_list.c: the same of the key joints. */
 tobi_status tobi_joint_list_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);

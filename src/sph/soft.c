@@ -81,7 +81,7 @@ static void count_links(const void *view, int64_t begin, int64_t end, double *to
         double r[3];
         for (cell_walk w = begin_walk(s, x, 2); next_row(&w, &from, &to);) near += to - from;
         soft_of(s)->found[b] = 0;
-        if (!near) continue;
+        if (!near || q->size[b].volume == 0) continue;
         for (cell_walk w = begin_walk(s, x, 1); next_row(&w, &from, &to);)
             for (int32_t i = from; i < to; i++) found += subtract(s, i, x, r) < h2;
         soft_of(s)->found[b] = found;

@@ -57,6 +57,7 @@ static int inside_body(const tobi_system *s, tobi_region *r, const double x[3])
     int inside = 0;
     for (int k = 0; k < s->sim->body_count; k++) {
         const tobi_body *b = &s->sim->bodies[k];
+        if (s->solid_count > 0 && s->solids[r->owner].clamp == k) continue;    /* it fills its clamp */
         if (!meets(s, b, x, b->blade ? 0.25*s->smoothing.spacing : 0)) continue;
         inside = 1;
         if (b->blade && !r->blade) r->blade = k + 1;

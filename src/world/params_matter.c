@@ -132,6 +132,9 @@ static const tobi_param solid_rows[] = {
     { .key = "bonded", BOOL, AT(tobi_solid_def, bonded), .def = { 1 },
       .doc = "Whether it sticks to the other bonded solids that it touches; one that is not meets all "
              "others with contact and friction." },
+    { .key = "clamped_to", TEXT, AT(tobi_solid_def, clamped_to), .unit = "name",
+      .doc = "Body that holds the solid: its particles that start in the body, or nearer than a spacing to "
+             "it, go with it, and it feels their force." },
     { .key = "surface_friction", REAL, AT(tobi_solid_def, surface_friction), .def = { 0.3 }, FRICTION,
       .unit = "1",
       .doc = "Coulomb friction where it meets solids that it is not bonded to; of two the square root "
@@ -175,7 +178,7 @@ static const struct { const char *key; uint32_t models; } constants[] = {
     { "strength", BREAKABLE },              { "fracture_energy", BREAKABLE },
     { "damping", ~OF(TOBI_STATIONARY) },
     { "cut_friction", ~(OF(TOBI_STATIONARY) | OF(TOBI_LIQUID) | OF(TOBI_SAND)) },
-    { "surface_friction", ~OF(TOBI_LIQUID) },
+    { "surface_friction", ~OF(TOBI_LIQUID) }, { "clamped_to", ~(OF(TOBI_LIQUID) | OF(TOBI_STATIONARY)) },
 #undef BREAKABLE
 #undef ELASTIC
 };

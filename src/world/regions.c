@@ -187,6 +187,8 @@ tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const
     tobi_solid *solid = &s->solids[s->solid_count++];
     solid->def = *def;
     snprintf(solid->name, sizeof solid->name, "%s", def->name ? def->name : "solid");
+    solid->clamp = -1;
+    snprintf(solid->clamped_to, sizeof solid->clamped_to, "%s", def->clamped_to ? def->clamped_to : "");
     if (def->mass > 0 && volume > 0) solid->def.density = def->mass/volume;
     char note[200] = "";
     if (s->method->accept) TOBI_TRY(s->method->accept(s, s->solid_count - 1, note, err));

@@ -107,6 +107,7 @@ static tobi_status move_bodies(tobi_world *w, tobi_error *err)
 /* Bodies with a motion, `way` s after the begin of the step, `more` of it since they were last placed. */
 static tobi_status place_bodies(tobi_simulation *s, double way, double more, tobi_error *err)
 {
+    s->way = way;
     for (int k = 0; k < s->body_count; k++)
         if (s->bodies[k].rigid.kind == TOBI_PRESCRIBED)
             TOBI_TRY(tobi_body_place_within(&s->bodies[k], s->time, way, more, err));

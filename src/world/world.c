@@ -254,9 +254,11 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(check_systems(w, err));
     TOBI_TRY(tobi_mixture_start(w, err));
     TOBI_TRY(tobi_world_start_drive(w, err));
+    TOBI_TRY(tobi_world_find_clamps(w, err));
     TOBI_TRY(fill_systems(w, err));
     TOBI_TRY(tobi_fit_note(w, err));
     TOBI_TRY(tobi_world_note_regions(w, err));
+    TOBI_TRY(tobi_world_check_clamps(w, err));
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));
     TOBI_TRY(tobi_world_note_clamps(w, err));
     TOBI_TRY(tobi_world_note_liquids(w, err));

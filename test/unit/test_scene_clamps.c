@@ -1,0 +1,56 @@
+/* Scenes whose solids are clamped to bodies that cannot hold them. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <string.h>
+#include "tobiuo/scene.h"
+
+static const char text[] =
+    "{ \"method\": \"mlsmpm\", \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] },\n"
+    "  \"spacing\": 0.02, \"end_time\": 1,\n"
+    "  \"bodies\": [ { \"name\": \"plate\", \"box\": { \"min\": [0, 0], \"max\": [0.1, 0.1] } },\n"
+    "    { \"name\": \"gate\", \"box\": { \"min\": [0, 0.2], \"max\": [0.1, 0.3] },\n"
+    "      \"absent\": { \"from\": 1 } },\n"
+    "    { \"name\": \"knife\", \"box\": { \"min\": [0, 0.4], \"max\": [0.1, 0.5] }, \"blade\": true } ],\n"
+    "  \"solids\": [ { \"name\": \"a\", \"clamped_to\": \"plat\",\n"
+    "      \"fill\": [ { \"box\": { \"min\": [0, 0.1], \"max\": [0.1, 0.2] } } ] },\n"
+    "    { \"name\": \"b\", \"clamped_to\": \"gate\",\n"
+    "      \"fill\": [ { \"box\": { \"min\": [0.2, 0.1], \"max\": [0.3, 0.2] } } ] },\n"
+    "    { \"name\": \"c\", \"clamped_to\": \"knife\",\n"
+    "      \"fill\": [ { \"box\": { \"min\": [0.4, 0.1], \"max\": [0.5, 0.2] } } ] },\n"
+    "    { \"name\": \"d\", \"model\": \"liquid\", \"clamped_to\": \"plate\",\n"
+    "      \"fill\": [ { \"box\": { \"min\": [0.6, 0.1], \"max\": [0.7, 0.2] } } ] } ] }";
+
+static const char *const expected[] = {
+    ":7:44: solids[0].clamped_to: \"plat\" is no body of the scene; did you mean \"plate\"?",
+    ":9:34: solids[1].clamped_to: \"gate\" is absent for a time; a rigid body holds a solid",
+    ":11:34: solids[2].clamped_to: \"knife\" is a blade, which cuts solids; a rigid body holds a solid",
+    "solids[3].clamped_to: is nothing that this model knows",
+};
+
+static void every_mistake_is_told(void **state)
+{
+    (void)state;
+    const int count = sizeof expected/sizeof *expected;
+    tobi_scene *scene;
+    tobi_report *report;
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, &report, &err),
+                     TOBI_INVALID);
+    for (int k = 0; k < count; k++) {
+        int found = 0;
+        for (int i = 0; i < tobi_report_count(report); i++)
+            found += strstr(tobi_report_line(report, i), expected[k]) != NULL;
+        if (found < 1) fail_msg("not told: %s", expected[k]);
+    }
+    assert_int_equal(tobi_report_count(report), count);
+    tobi_report_free(report);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(every_mistake_is_told) };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
