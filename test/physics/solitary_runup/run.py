@@ -5,6 +5,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from beach import G, scene, soliton
 from harness import Case, read_table
 
 case = Case("solitary_runup", "Run-up of a solitary wave", """
@@ -15,7 +16,7 @@ not break, H/d < 0.8183 cot(beta)^(-10/9).
 On a slope of 1:20 that is H < 0.029 d, less than a spacing at 30 layers: the slope here is 1:3. By eisph and wcsph a run takes
 ten times as long; wcsph, too viscous, reached half the law at 10 and 15 layers.""", methods=("isph",))
 
-D, G = 0.3, 9.81
+D = 0.3
 
 
 def law(cot, height):
@@ -25,32 +26,13 @@ def law(cot, height):
 
 
 def run_up(cot, height, layers):
-    spacing, block = D/layers, 6*D/layers
-    meant = law(cot, height)
-    flat = round((2*2.65/math.sqrt(0.75*height) + 2)*D/spacing)*spacing       # the wave fits before the slope
-    top = round((1.3 + 2*meant)*D, 4)
-    way = math.ceil(top*cot/spacing)*spacing
-    c = math.sqrt(G*D*(1 + height))
-    end = round(2*4.1*D/math.sqrt(0.75*height)/c + (flat + 2.2*D*cot)/c, 4)
-    slope = case.out/f"slope_{cot}_{height}_{layers}.obj"
-    case.out.mkdir(parents=True, exist_ok=True)
-    lines = [f"v {x} {y} {z}" for z in (-1, 1) for x, y in ((flat, 0), (flat + way, 0), (flat + way, top))]
-    faces = [(1, 3, 2), (4, 5, 6)] + [f for k in range(3) for f in ((k + 1, (k + 1) % 3 + 1, (k + 1) % 3 + 4),
-                                                                     (k + 1, (k + 1) % 3 + 4, k + 4))]
-    slope.write_text("\n".join(lines + ["f %d %d %d" % f for f in faces]) + "\n")
+    spacing, meant = D/layers, law(cot, height)
+    k, c = soliton(height)
+    flat = round((2*2.65/k + 2)*D/spacing)*spacing       # the wave fits before the slope
+    speed = c*math.sqrt(G*D)
+    end = round(2*4.1*D/k/speed + (flat + 2.2*D*cot)/speed, 4)
     label = f"cot_{cot}_{height}_{layers}"
-    # the end of the slope is the domain's. Water ends where the slope leaves it: particles inside the body are not placed.
-    content = {"dimension": 2, "domain": {"min": [-3*block, 0], "max": [flat + way + spacing, round(max(1.2*top, 1.7*D)/spacing)*spacing]},
-               "spacing": spacing, "end_time": end,
-               "fluids": [{"name": "water", "density": 1000, "viscosity": 0,
-                           "fill": [{"box": {"min": [0, 0], "max": [flat + D*cot, D]}}]}],
-               "bodies": [{"name": "piston", "box": {"min": [-block, 0], "max": [0, 1.5*D]},
-                           "motion": {"piston": {"depth": D, "solitary": {"height": height*D}}}},
-                          {"name": "slope", "mesh": str(slope)}],
-               "probes": [{"name": "shore", "kind": "run-up", "position": [flat + 0.5*D*cot, 0.5*D + 0.5*spacing],
-                           "end": [flat + 0.98*way, 0.98*top + 0.5*spacing]},
-                          {"name": "gauge", "kind": "level", "position": [flat - D, 0]}],
-               "output": {"interval": end/10, "probe_interval": end/600, "fields": ["velocity"], "surfaces": False}}
+    content = scene(case.out/f"slope_{cot}_{height}_{layers}.obj", D, height, cot, layers, flat, meant, end, [("gauge", -D)])
     table = read_table(case.run(label, scene=case.write_scene(label, content)) / "probes.csv")
     times, level = table["time"], [y - D for y in table["gauge_level"]]
     name = f"slope 1:{cot}, H = {height} d, d/{layers}"
