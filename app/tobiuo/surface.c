@@ -183,6 +183,9 @@ static int read_input(const surface_options *o, const tobi_results *results, int
 {
     tobi_error err = { 0 };
     if (tobi_results_read(results, k, &in->moment, &err) != TOBI_OK) return complain("%s", err.text);
+    for (int64_t i = 0; i < in->moment.count; i++)
+        if (tobi_looks_hides(&in->looks, in->moment.time, in->moment.positions[i]))
+            in->moment.positions[i][0] = NAN;      /* out of the surface */
     in->def.particle_count = in->moment.count;
     in->def.positions = (const double (*)[3])in->moment.positions;
     const int code = make_groups(in);

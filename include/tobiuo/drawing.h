@@ -33,13 +33,24 @@ typedef struct tobi_body_look {
     int64_t triangle_count;
 } tobi_body_look;
 
+/* Where an inlet holds the particles that it will let go, and from when to when they move, s. */
+typedef struct tobi_inlet_look {
+    double centre[3];                  /* m                                                           */
+    double normal[3], along[3], across[3];     /* unit vectors; the flow goes along normal            */
+    double half[2], radius;            /* m: half sides, or the radius of a disc, else 0              */
+    double depth;                      /* m, behind the centre                                        */
+    double (*flows)[2];                /* owned; from the first on, up to the second                  */
+    int    flow_count;
+} tobi_inlet_look;
+
 /* What of a world pictures need and does not change. Lists owned: tobi_looks_free. */
 typedef struct tobi_looks {
     int    dimension, threads;
     double box_min[3], box_max[3], gravity[3], spacing;      /* m, m/s2 */
-    int    material_count, body_count;
+    int    material_count, body_count, inlet_count;
     tobi_material_look *materials;
     tobi_body_look *bodies;            /* and lines behind them */
+    tobi_inlet_look *inlets;
 } tobi_looks;
 
 /* world: need not have begun. */
@@ -47,6 +58,10 @@ TOBI_API tobi_status tobi_world_looks(const tobi_world *world, tobi_looks *looks
 TOBI_API void tobi_looks_free(tobi_looks *looks);
 /* Red, green, blue (sRGB) and opacity, 0 to 1, of a part of a material (0 skin, 1 core, 2 face of a cut). */
 TOBI_API void tobi_looks_color(const tobi_looks *looks, int material, int part, float color[4]);
+
+/* 1: a particle at x, m, waits in an inlet that does not flow at this time. Pictures and surfaces leave it
+   out; results have it. */
+TOBI_API int tobi_looks_hides(const tobi_looks *looks, double time, const double x[3]);
 
 typedef struct tobi_drawing tobi_drawing;
 /* The picture of a moment as a view shows it. It borrows looks and moment until it is freed. Fields that

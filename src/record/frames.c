@@ -165,7 +165,7 @@ static tobi_status note_camera(tobi_run *run, const tobi_drawing *d, int view, t
 tobi_status tobi_frames_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
     tobi_moment *m = &snapshot->moment;
-    if (run->looks.spacing <= 0) TOBI_TRY(tobi_world_looks(run->world, &run->looks, err));
+    TOBI_TRY(tobi_record_find_looks(run, err));
     m->time = tobi_world_time(run->world);
     m->count = snapshot->set[TOBI_SET_FLUID].count;
     m->positions = snapshot->set[TOBI_SET_FLUID].position;

@@ -4,6 +4,7 @@
 #include "record/record.h"
 #include "world/fit.h"
 #include "world/world.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,6 +66,49 @@ static void add_lines(const tobi_world *w, const tobi_record_name *names, tobi_l
     }
 }
 
+/* When it flows: between two rows of a table if one of them does, before and after all as the end row. */
+static void find_flows(const tobi_opening *o, tobi_inlet_look *in)
+{
+    if (!o->rows) {
+        in->flows[in->flow_count][0] = o->start;
+        in->flows[in->flow_count++][1] = o->stop > 0 ? o->stop : INFINITY;
+        return;
+    }
+    for (int64_t k = -1; k < o->row_count; k++) {
+        const bool first = k < 0, last = k + 1 == o->row_count;
+        const double low = first ? 0 : o->rows[k].speed, high = last ? 0 : o->rows[k + 1].speed;
+        if (!(low > 0 || high > 0)) continue;
+        const double from = first ? -INFINITY : o->rows[k].time, to = last ? INFINITY : o->rows[k + 1].time;
+        if (in->flow_count > 0 && in->flows[in->flow_count - 1][1] == from) {
+            in->flows[in->flow_count - 1][1] = to;
+            continue;
+        }
+        in->flows[in->flow_count][0] = from;
+        in->flows[in->flow_count++][1] = to;
+    }
+}
+
+static tobi_status add_inlets(const tobi_world *w, tobi_looks *looks, tobi_error *err)
+{
+    looks->inlets = calloc((size_t)w->sim.opening_count + 1, sizeof *looks->inlets);
+    if (!looks->inlets) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    for (int k = 0; k < w->sim.opening_count; k++) {
+        const tobi_opening *o = &w->sim.openings[k];
+        if (o->outlet) continue;
+        tobi_inlet_look *in = &looks->inlets[looks->inlet_count++];
+        *in = (tobi_inlet_look){ .half = { o->half[0], o->half[1] }, .radius = o->radius,
+                                 .depth = o->depth + o->step };
+        for (int a = 0; a < 3; a++) {
+            in->centre[a] = o->centre[a] + w->system[0].box.lower[a];
+            in->normal[a] = o->normal[a], in->along[a] = o->along[a], in->across[a] = o->across[a];
+        }
+        in->flows = malloc(((size_t)o->row_count + 2)*sizeof *in->flows);
+        if (!in->flows) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+        find_flows(o, in);
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_looks(const tobi_world *w, tobi_looks *looks, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);
@@ -87,6 +131,7 @@ tobi_status tobi_world_looks(const tobi_world *w, tobi_looks *looks, tobi_error 
     for (int k = 0; status == TOBI_OK && k < w->system_count; k++)
         status = add_materials(w, &w->system[k], looks, err);
     if (status == TOBI_OK) status = add_bodies(w, body, looks, err);
+    if (status == TOBI_OK) status = add_inlets(w, looks, err);
     if (status == TOBI_OK) add_lines(w, line, looks);
     else tobi_looks_free(looks);
     free(body);
@@ -115,4 +160,10 @@ bool tobi_record_has_kinds(const tobi_world *w)
     bool differ = false;
     for (int k = 1; s && k < s->fluid_count; k++) differ |= !is_same_fluid(&s->fluid[0], &s->fluid[k]);
     return differ;
+}
+
+/* Once for a run. */
+tobi_status tobi_record_find_looks(tobi_run *run, tobi_error *err)
+{
+    return run->looks.spacing > 0 ? TOBI_OK : tobi_world_looks(run->world, &run->looks, err);
 }

@@ -238,6 +238,8 @@ tobi_status tobi_record_name_bodies(const tobi_world *world, tobi_record_name **
                                     tobi_record_name **traction, tobi_record_name **line, tobi_error *err);
 /* Whether there are fluids that differ, be it in colour alone. */
 bool tobi_record_has_kinds(const tobi_world *world);
+/* run->looks, which are found once. */
+tobi_status tobi_record_find_looks(tobi_run *run, tobi_error *err);
 /* Whether a blade or a crack may part a solid. */
 bool tobi_record_has_pieces(const tobi_world *world);
 

@@ -4,10 +4,12 @@
 #include "io/surface_files.h"
 #include "record/record.h"
 #include "world/world.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct tobi_record_surface {
+    double (*position)[3];       /* NAN: what waits in an inlet */
     int32_t *group;
     double *values[TOBI_SURFACE_FIELD_LIMIT];
 } tobi_record_surface;
@@ -17,6 +19,7 @@ void tobi_record_free_surface(tobi_record_surface *s)
     if (!s) return;
     for (int f = 0; f < TOBI_SURFACE_FIELD_LIMIT; f++) free(s->values[f]);
     free(s->group);
+    free(s->position);
     free(s);
 }
 
@@ -75,7 +78,14 @@ tobi_status tobi_record_take_surface(tobi_run *run, tobi_snapshot *snapshot, tob
     const int64_t n = snapshot->set[TOBI_SET_FLUID].count;
     tobi_record_surface *s = snapshot->skin = calloc(1, sizeof *s);
     if (s) s->group = malloc((size_t)n*sizeof *s->group + 1);
-    if (!s || !s->group) return tobi_fail(err, TOBI_NO_MEMORY, "surface: out of memory");
+    if (s) s->position = malloc((size_t)n*sizeof *s->position + 1);
+    if (!s || !s->group || !s->position) return tobi_fail(err, TOBI_NO_MEMORY, "surface: out of memory");
+    TOBI_TRY(tobi_record_find_looks(run, err));
+    for (int64_t i = 0; i < n; i++) {
+        const double time = tobi_world_time(run->world);
+        memcpy(s->position[i], snapshot->set[TOBI_SET_FLUID].position[i], sizeof s->position[i]);
+        if (tobi_looks_hides(&run->looks, time, s->position[i])) s->position[i][0] = NAN;
+    }
     for (int f = 0; f < run->surface_fields; f++) {
         const tobi_record_field *field = &run->surface_field[f];
         s->values[f] = malloc((size_t)n*(size_t)field->components*sizeof(double) + 1);
@@ -95,7 +105,7 @@ tobi_status tobi_record_write_surface(tobi_run *run, const tobi_snapshot *snapsh
     tobi_surface_field fields[TOBI_SURFACE_FIELD_LIMIT];
     tobi_surface_def d = tobi_default_surface();
     d.particle_count = set->count;
-    d.positions = (const double (*)[3])set->position;
+    d.positions = (const double (*)[3])snapshot->skin->position;
     d.group = snapshot->skin->group;
     d.spacing = run->world->system[0].smoothing.spacing;
     d.cell = run->output.surface_cell;

@@ -40,9 +40,38 @@ void tobi_looks_free(tobi_looks *looks)
         tobi_image_free(looks->bodies[k].image);
         free(looks->bodies[k].uv);
     }
+    for (int k = 0; looks->inlets && k < looks->inlet_count; k++) free(looks->inlets[k].flows);
     free(looks->materials);
     free(looks->bodies);
+    free(looks->inlets);
     *looks = (tobi_looks){ 0 };
+}
+
+static int flows_at(const tobi_inlet_look *in, double time)
+{
+    int flows = 0;
+    for (int k = 0; k < in->flow_count; k++) {
+        const double slack = 1e-9*(1 + fabs(time));      /* times in files are rounded */
+        flows |= time >= in->flows[k][0] - slack && time < in->flows[k][1] - slack;
+    }
+    return flows;
+}
+
+int tobi_looks_hides(const tobi_looks *looks, double time, const double x[3])
+{
+    for (int k = 0; k < looks->inlet_count; k++) {
+        const tobi_inlet_look *in = &looks->inlets[k];
+        const double slack = 1e-9;      /* m */
+        double at[3] = { 0, 0, 0 };
+        for (int a = 0; a < 3; a++) {
+            const double arm = x[a] - in->centre[a];
+            at[0] += arm*in->normal[a], at[1] += arm*in->along[a], at[2] += arm*in->across[a];
+        }
+        const int faces = in->radius > 0 ? at[1]*at[1] + at[2]*at[2] <= in->radius*in->radius + slack
+            : fabs(at[1]) <= in->half[0] + slack && fabs(at[2]) <= in->half[1] + slack;
+        if (faces && at[0] < 0 && at[0] >= -in->depth && !flows_at(in, time)) return 1;
+    }
+    return 0;
 }
 
 static tobi_status no_memory(tobi_error *err)
@@ -130,7 +159,7 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
     for (int64_t i = 0; i < m->count; i++) {
         const int material = number_at(d->material, i, 0), piece = number_at(d->piece, i, -1);
         const tobi_material_look *look = look_of(d->looks, material);
-        if (!look->visible) continue;
+        if (!look->visible || tobi_looks_hides(d->looks, m->time, m->positions[i])) continue;
         const int64_t to = d->count++;
         memcpy(d->positions[to], m->positions[i], sizeof *d->positions);
         for (int k = 0; arrows && k < 3; k++) d->velocities[to][k] = (float)velocity->values[3*i + k];

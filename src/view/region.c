@@ -161,7 +161,7 @@ static bool add_cell(const plane *p, geometry *g, int x, int y)
 static bool add_discs(const plane *p, geometry *g)
 {
     const surface_request *r = p->r;
-    const float least = 0.9f*r->level;
+    const float least = 0.75f*r->level;
     if (!view_reserve(g, 0, 0, 2*r->count)) return false;
     for (int64_t i = 0; i < r->count; i++) {
         const double *x = r->f->positions[r->row[i]];

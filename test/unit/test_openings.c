@@ -8,6 +8,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 #include "scene/scene.h"
+#include "tobiuo/drawing.h"
 #include "world/world.h"
 
 #define IN "{ \"name\": \"in\", \"centre\": [0.2, 0.1], \"normal\": [1, 0], \"width\": 0.2, "
@@ -373,11 +374,58 @@ static void test_lists(void **state)
     refuse(many, "", "", "inlets: has 33 entries, allowed are 32");
 }
 
+/* Particles that pictures leave out. */
+static int64_t count_hidden(tobi_world *w, const tobi_looks *looks, double time)
+{
+    const int64_t n = tobi_world_count(w, TOBI_FLUID);
+    double (*x)[3] = malloc((size_t)n*sizeof *x);
+    int64_t hidden = 0;
+    tobi_error err = { 0 };
+    must(tobi_world_read(w, TOBI_FLUID, "position", x[0], 3*n, &err), &err);
+    for (int64_t i = 0; i < n; i++) hidden += tobi_looks_hides(looks, time, x[i]);
+    free(x);
+    return hidden;
+}
+
+/* What an inlet holds is not drawn while nothing flows: all that the method holds. */
+static void test_idle(void **state)
+{
+    (void)state;
+    char path[64], table[200];
+    write_flow(path, "time,speed\n0,0\n0.02,0\n0.03,0.4\n0.05,0.4\n0.06,0\n0.1,0\n");
+    snprintf(table, sizeof table, IN "\"file\": \"%s\" }", path);
+    const char *const cases[] = { IN "\"speed\": 0.4, \"start\": 0.02, \"stop\": 0.06 }", table };
+    for (int k = 0; k < 2; k++) {
+        tobi_world *w;
+        tobi_looks looks;
+        int64_t held = 0;
+        tobi_error err = { 0 };
+        must(make("dfsph", 1, cases[k], "", "", &w, &err), &err);
+        must(tobi_world_looks(w, &looks, &err), &err);
+        assert_int_equal(looks.inlet_count, 1);
+        assert_true(count_hidden(w, &looks, 0) > 20);
+        assert_int_equal(count_hidden(w, &looks, 0.02), 0);
+        assert_int_equal(count_hidden(w, &looks, 0.04), 0);
+        must(tobi_world_advance(w, 0.08, NULL, &err), &err);
+        const tobi_particles *p = &w->system[0].particles;
+        for (int64_t i = 0; i < p->count; i++) {
+            const double x[3] = { p->position[i].x, p->position[i].y, p->position[i].z };
+            held += tobi_opening_find(w->sim.openings, 1, x) == 0;
+        }
+        assert_int_equal(count_hidden(w, &looks, tobi_world_time(w)), held);
+        assert_int_equal(count_hidden(w, &looks, 0.06), count_hidden(w, &looks, 9));
+        assert_int_equal(count_hidden(w, &looks, 0.0599), 0);
+        tobi_looks_free(&looks);
+        tobi_world_destroy(w);
+    }
+    unlink(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_bits), cmocka_unit_test(test_disc),  cmocka_unit_test(test_mistakes),
-        cmocka_unit_test(test_wrong_calls), cmocka_unit_test(test_lists),
+        cmocka_unit_test(test_wrong_calls), cmocka_unit_test(test_lists), cmocka_unit_test(test_idle),
         cmocka_unit_test(test_set), cmocka_unit_test(test_body_later),
         cmocka_unit_test(test_damaged), cmocka_unit_test(test_flow_in_time),
         cmocka_unit_test(test_wrong_tables), cmocka_unit_test(test_full_pipe),
