@@ -40,11 +40,15 @@ static double open_at(const tobi_system *s, const double local[3], int *inside)
         for (int side = 0; side < 2 && !s->box.periodic[a]; side++)
             open *= open_beside(c, side ? s->box.size[a] - local[a] : local[a]);
     for (int b = 0; b < s->sim->body_count; b++) {
+        const tobi_bvh *bvh = s->sim->bodies[b].bvh;
         tobi_bvh_hit hit;
-        if (s->sim->bodies[b].is_absent || !tobi_bvh_closest(s->sim->bodies[b].bvh, local, c->h,
-            &hit)) continue;
-        open *= open_beside(c, hit.signed_distance);
-        *inside |= hit.signed_distance < -INSIDE*c->spacing;
+        if (s->sim->bodies[b].is_absent) continue;
+        if (tobi_bvh_closest(bvh, local, c->h, &hit)) {
+            open *= open_beside(c, hit.signed_distance);
+            *inside |= hit.signed_distance < -INSIDE*c->spacing;
+        } else {
+            *inside |= tobi_bvh_inside(bvh, local);          /* deeper than the kernel reaches */
+        }
     }
     return open;
 }

@@ -280,6 +280,16 @@ static void a_dry_floor_and_a_block(void **state)
     p = make("island", TOBI_PROBE_LEVEL, 0.1, 0.1, 0);
     assert_close(measure(world, &p).level, 0.15, 0.5*D, "the dry island");
     tobi_world_destroy(world);
+
+    world = make_tank(3, -9.81, 0.1, "dfsph");
+    b.name = "hill";
+    set_vector(b.box_min, 0, 0, 0);
+    set_vector(b.box_max, 0.12, 0.2, 0.15);           /* its middle is further in than the kernel reaches */
+    OK(tobi_world_add_body(world, &b, &err));
+    OK(tobi_world_start(world, &err));
+    p = make("hill", TOBI_PROBE_LEVEL, 0.04, 0.1, 0);
+    assert_close(measure(world, &p).level, 0.15, 0.5*D, "the dry hill");
+    tobi_world_destroy(world);
 }
 
 static void a_run_up_ends_at_the_surface(void **state)
