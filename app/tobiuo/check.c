@@ -128,13 +128,21 @@ static tobi_status find_cost(const tobi_scene *scene, tobi_world *world, cost *c
                              &c->size, err);
 }
 
+static double machine_bytes(void) { return (double)sysconf(_SC_PHYS_PAGES)*(double)sysconf(_SC_PAGESIZE); }
+
+static const char too_many[] = "more particles than this machine has memory for";
+
 tobi_status try_scene(tobi_scene *scene, tobi_error *err)
 {
     tobi_world *world = NULL;
-    cost c;
+    cost c = { 0 };
     tobi_status status = tobi_scene_build(scene, &world, err);
     if (status == TOBI_OK) status = find_cost(scene, world, &c, err);
     if (status != TOBI_OK) tobi_scene_place_error(scene, err);
+    if (status == TOBI_OK && (double)c.bytes > machine_bytes()) {
+        status = TOBI_NO_MEMORY;
+        snprintf(err->text, sizeof err->text, "%s", too_many);
+    }
     tobi_world_destroy(world);
     return status;
 }
@@ -161,13 +169,13 @@ static int check_world(tobi_scene *scene)
         return complain("%s", err.text);
     }
     const double step = print_scene(scene, world);
-    double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    const double machine = machine_bytes();
     if (c.fluid > 0)
         printf("%-17s%lld\n", name_particles(scene, world), (long long)c.fluid);
     printf("body particles   %lld\n", (long long)c.bodies);
     printf("memory           %.1f MB of %.0f MB\n", (double)c.bytes * 1e-6, machine * 1e-6);
     print_size(scene, &c.size);
-    int code = (double)c.bytes > machine ? complain("more particles than this machine has memory for") : 0;
+    int code = (double)c.bytes > machine ? complain("%s", too_many) : 0;
     if (c.fluid <= START_LIMIT) code |= print_time(scene, world, step);
     else printf("wall clock       not measured with more than %d particles\n", START_LIMIT);
     tobi_world_destroy(world);

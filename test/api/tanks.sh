@@ -60,6 +60,7 @@ for family in $families; do
     expect 2 "--spacing: 'nan' is not a number from 1e-07 to 100000 m" new $family --spacing nan absurd
     check "$family left no folder" test ! -e absurd
 done
+expect 1 "no scene is written; given: --spacing 0.0001" new wave_tank --spacing 1e-4
 expect 2 "--until: '1e9' is not a number from 1e-06 to 100000 s" new hose --until 1e9
 
 # --- sweeps -----------------------------------------------------------------------------------------
