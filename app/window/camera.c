@@ -31,6 +31,23 @@ static void set_axes(camera *c, const double up[3])
     cross(c->side, c->up, c->front);
 }
 
+static void set_screen(const camera *c, double right[3], double down[3], double away[3]);
+
+/* How far from its middle the whole domain is seen, in a window half again as wide as high, with margins. */
+static double fit_distance(const camera *c, const double low[3], const double high[3])
+{
+    const double half = 0.86*tan(c->angle*HALF_TURN/360), wide = 1.5*half;
+    double right[3], down[3], away[3], distance = 0;
+    set_screen(c, right, down, away);
+    for (int i = 0; i < 8; i++) {
+        double p[3];
+        for (int k = 0; k < 3; k++) p[k] = (i >> k & 1 ? 0.5 : -0.5)*(high[k] - low[k]);
+        const double need = fmax(fabs(dot(p, right))/wide, fabs(dot(p, down))/half);
+        distance = fmax(distance, need + dot(p, away));
+    }
+    return distance;
+}
+
 void camera_home(camera *c, int dimension, const double low[3], const double high[3], const double up[3],
                  const double eye[3], const double target[3], double angle)
 {
@@ -41,12 +58,11 @@ void camera_home(camera *c, int dimension, const double low[3], const double hig
     set_axes(c, up);
     for (int k = 0; k < 3; k++) {
         c->target[k] = angle > 0 ? target[k] : 0.5*(low[k] + high[k]);
-        size += (high[k] - low[k])*(high[k] - low[k]);
         away[k] = eye[k] - target[k];
     }
-    c->distance = 0.55*sqrt(size)/sin(c->angle*HALF_TURN/360);
     c->yaw = 0.48;
     c->pitch = 0.34;
+    c->distance = fit_distance(c, low, high);
     if (!(angle > 0) || !((size = normalize(away)) > 0)) return;
     c->distance = size;
     c->pitch = asin(fmax(-1, fmin(1, dot(away, c->up))));

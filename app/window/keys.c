@@ -246,6 +246,7 @@ static int64_t find_particle(const viewer *v, double x, double y)
     for (int64_t i = 0; m && i < m->count; i++) {
         double pixel[3], scale;
         if (is_clipped(&v->look, m->positions[i])) continue;
+        if (tobi_looks_hides(&v->def.looks, m->time, m->positions[i])) continue;
         if (!camera_project(&v->look.camera, v->width, v->height, m->positions[i], pixel, &scale)) continue;
         const double off = hypot(pixel[0] - x, pixel[1] - y), radius = fmax(3,
                 0.6*scale*v->def.looks.spacing);

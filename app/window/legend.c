@@ -45,22 +45,50 @@ static void draw_head(const viewer *v, const canvas *c)
     tobi_overlay_text(c, 16, 50, SIZE, text, ink);
 }
 
+static int64_t row_of(const tobi_moment *m, int64_t id)
+{
+    const tobi_moment_field *f = find_field(m, "particle_id");
+    if (!f) return id < m->count ? id : -1;
+    for (int64_t i = 0; i < m->count; i++)
+        if ((int64_t)f->values[i] == id) return i;
+    return -1;
+}
+
+/* Where the box of the particles that are read ends; rows: of the moment, -1 = none. */
+static int find_picks(const viewer *v, int64_t row[PICKS], int *count)
+{
+    const tobi_moment *m = v->moment ? moment_of(v->moment) : NULL;
+    *count = 0;
+    for (int k = 0; k < PICKS; k++) {
+        row[k] = m && v->picks[k] >= 0 ? row_of(m, v->picks[k]) : -1;
+        *count += row[k] >= 0;
+    }
+    return *count ? 20 + LINE*(*count*(m->field_count + 2) + (*count == 2)) : 0;
+}
+
 static void draw_colors(const viewer *v, const canvas *c)
 {
     enum { HIGH = 240, WIDE = 16 };
-    const int x = v->width - 90, y = (v->height - HIGH)/2;
+    int64_t row[PICKS];
+    int count, right = v->width, y = (v->height - HIGH)/2;
+    const int picks_end = find_picks(v, row, &count);
+    if (picks_end > y - 32) {      /* below the particles that are read, or beside them */
+        if (picks_end + HIGH + 100 < v->height) y = picks_end + 48;
+        else right -= LEGEND_WIDTH + 30;
+    }
+    const int x = right - 90;
     char text[160], label[160];
     const char *unit = unit_of(v->look.field);
     if (!*v->look.field) return;
     snprintf(label, sizeof label, "%s%s%s", v->look.field, *unit ? ", " : "", unit);
-    const float left = fminf((float)x, (float)v->width - tobi_overlay_text_width(SIZE, label) - 8);
-    tobi_overlay_box(c, (int)left - 8, y - 32, v->width, HIGH + 48, paper, 0.75f);
-    for (int row = 0; row < HIGH; row++) {
+    const float left = fminf((float)x, (float)right - tobi_overlay_text_width(SIZE, label) - 8);
+    tobi_overlay_box(c, (int)left - 8, y - 32, right - (int)left + 8, HIGH + 48, paper, 0.75f);
+    for (int step = 0; step < HIGH; step++) {
         float color[3];
         uint8_t bytes[3];
-        map_color(1 - (double)row/(HIGH - 1), color);
+        map_color(1 - (double)step/(HIGH - 1), color);
         for (int k = 0; k < 3; k++) bytes[k] = (uint8_t)(255*color[k] + 0.5f);
-        tobi_overlay_box(c, x, y + row, WIDE, 1, bytes, 1);
+        tobi_overlay_box(c, x, y + step, WIDE, 1, bytes, 1);
     }
     for (int k = 0; k <= 4; k++) {
         const float at = (float)(y + HIGH - k*(HIGH - 1)/4);
@@ -135,7 +163,8 @@ static void draw_graph(const viewer *v, const canvas *c)
     for (int k = 0; k <= 2; k++) {
         const float y = f.y + f.high*(float)k/2;
         tobi_overlay_line(c, f.x, y, f.x + f.wide, y, 0.5f, grey);
-        snprintf(text, sizeof text, "%.3g", f.top - k*(f.top - f.low)/2);
+        const double value = f.top - k*(f.top - f.low)/2;
+        snprintf(text, sizeof text, "%.3g", fabs(value) < 1e-3*(f.top - f.low) ? 0 : value);
         tobi_overlay_text(c, f.x - 6 - tobi_overlay_text_width(8, text), y + 4, 8, text, ink);
     }
     if (v->moment) {
@@ -145,15 +174,6 @@ static void draw_graph(const viewer *v, const canvas *c)
 }
 
 /* --- particles --- */
-
-static int64_t row_of(const tobi_moment *m, int64_t id)
-{
-    const tobi_moment_field *f = find_field(m, "particle_id");
-    if (!f) return id < m->count ? id : -1;
-    for (int64_t i = 0; i < m->count; i++)
-        if ((int64_t)f->values[i] == id) return i;
-    return -1;
-}
 
 static void mark_particle(const viewer *v, const canvas *c, const double point[3], int number)
 {
@@ -196,15 +216,11 @@ static int write_particle(const viewer *v, const canvas *c, const tobi_moment *m
 static void draw_picks(const viewer *v, const canvas *c)
 {
     const tobi_moment *m = v->moment ? moment_of(v->moment) : NULL;
-    int64_t row[PICKS] = { -1, -1 };
-    int line = 0, count = 0;
-    for (int k = 0; m && k < PICKS; k++) {
-        row[k] = v->picks[k] >= 0 ? row_of(m, v->picks[k]) : -1;
-        count += row[k] >= 0;
-    }
+    int64_t row[PICKS];
+    int line = 0, count;
+    const int end = find_picks(v, row, &count);
     if (!count) return;
-    tobi_overlay_box(c, v->width - LEGEND_WIDTH - 22, 20, LEGEND_WIDTH + 12,
-                     LINE*(count*(m->field_count + 2) + (count == 2)), paper, 0.75f);
+    tobi_overlay_box(c, v->width - LEGEND_WIDTH - 22, 20, LEGEND_WIDTH + 12, end - 20, paper, 0.75f);
     for (int k = 0; k < PICKS; k++) {
         if (row[k] < 0) continue;
         mark_particle(v, c, m->positions[row[k]], k);
@@ -225,8 +241,8 @@ static void draw_help(const viewer *v, const canvas *c)
 {
     int rows = 0, line = 0;
     for (const key_row *k = key_rows; k->key >= 0; k++) rows += k->name != NULL;
-    const int high = LINE*rows + 28, x = (v->width - 420)/2, y = (v->height - high)/2;
-    tobi_overlay_box(c, x, y, 420, high, paper, 0.92f);
+    const int high = LINE*rows + 28, x = (v->width - 450)/2, y = (v->height - high)/2;
+    tobi_overlay_box(c, x, y, 450, high, paper, 0.92f);
     for (const key_row *k = key_rows; k->key >= 0; k++) {
         if (!k->name) continue;
         const float at = (float)(y + 28 + LINE*line++);

@@ -141,6 +141,11 @@ xdotool key 0 click 4 key s; shot 6
 xdotool key 0 mousemove 360 250 click 1 mousemove 390 265 click 1 key s; shot 7
 xdotool key x mousemove 600 434 click 1 key s; shot 8
 xdotool key space sleep 0.1 key space key s; shot 9      # fewer outputs than there are
+xdotool key Home key less key s; shot 10
+xdotool keydown shift mousemove 400 150 mousedown 1 mousemove 420 160 mousemove 440 170 mouseup 1 keyup shift key s; shot 11
+xdotool key Home key End key s; shot 12
+xdotool mousemove 780 434 mousedown 1 mousemove 500 434 mousemove 20 434 mouseup 1 key s; shot 13
+xdotool key f mousemove 360 250 click 1 key s; shot 14
 xdotool key Escape
 wait $viewer
 check "Escape closes" test $? = 0
@@ -153,6 +158,10 @@ differ picture window_3.png window_6.png "wheel"
 differ picks,-head,-line window_3.png window_7.png "two particles"
 differ head,line,-picks window_3.png window_8.png "the time line; x"
 differ head,line window_8.png window_9.png "play"
+differ picture,-head,-line window_10.png window_11.png "shift and drag"
+differ picture,head,line window_10.png window_12.png "End"
+differ $all window_10.png window_13.png "a drag along the time line"
+differ picture,picks,-head,-line window_13.png window_14.png "a field and a particle"
 
 # --- a run ------------------------------------------------------------------------------------------
 expect 0 "" run drop.json --out seen --quiet --window --keys " nnfc q"
