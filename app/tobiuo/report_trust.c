@@ -95,6 +95,13 @@ static void judge_losses(const report *r)
 
 /* --- how fine the bodies are --- */
 
+/* The liquid is inside: its walls are no fins. */
+static int is_vessel(const report *r, int b)
+{
+    const json_t *bodies = report_value(r, "bodies");
+    return json_is_true(json_object_get(json_array_get(bodies, (size_t)b), "vessel"));
+}
+
 static void judge_body(const report *r, int b)
 {
     widths w;
@@ -106,6 +113,11 @@ static void judge_body(const report *r, int b)
         say(r, GOOD, what, "Narrowest %.4g m, %.1f spacings. Forces act over a cell of the grid, 2 "
             "spacings.",
             w.narrow, narrow);
+        return;
+    }
+    if (is_vessel(r, b)) {
+        say(r, GOOD, what, "A vessel, at least %.0f spacings wide. Its walls stand outside of the "
+            "liquid.", narrow);
         return;
     }
     if (narrow >= 16)

@@ -1,12 +1,13 @@
-/* Colours of values: the picture's own palette, or from deep blue over light blue to white. */
+/* Colours of values: the picture's own palette, or from deep blue over light blue to aqua, which
+   stands out from the light background. */
 #include "view/draw.h"
 #include <stdlib.h>
 
 vec view_color_of(const tobi_picture *f, float value)
 {
     static const float usual[5][3] = {
-        { 0.02f, 0.16f, 0.42f }, { 0.04f, 0.36f, 0.70f }, { 0.22f, 0.60f, 0.87f }, { 0.62f, 0.85f, 0.96f },
-        { 0.98f, 0.99f, 1.00f }
+        { 0.02f, 0.16f, 0.42f }, { 0.04f, 0.36f, 0.70f }, { 0.16f, 0.56f, 0.85f }, { 0.36f, 0.78f, 0.90f },
+        { 0.66f, 0.96f, 0.88f }
     };
     const float (*map)[3] = f->palette ? f->palette : usual;
     const int last = f->palette ? f->palette_count - 1 : 4;

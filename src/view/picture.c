@@ -442,7 +442,7 @@ static void draw_lines(scene *s)
     const tobi_picture *f = s->f;
     const vec dark = { 0.01f, 0.01f, 0.02f };
     for (int64_t k = 0; k < s->outline.count; k++)
-        view_draw_line(&s->c, s->outline.end[k][0], s->outline.end[k][1], 1, dark, 0.35f, false);
+        view_draw_line(&s->c, s->outline.end[k][0], s->outline.end[k][1], 1, dark, 0.5f, false);
     for (int64_t k = 0; k < s->isolines.count; k++)
         view_draw_line(&s->c, s->isolines.end[k][0], s->isolines.end[k][1], 1.2f, dark, 0.8f, false);
     for (int n = 0; n < f->path_count; n++) {

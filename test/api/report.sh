@@ -112,6 +112,15 @@ done
 # --- in a browser -----------------------------------------------------------------------------------
 expect 0 "" report tank
 check "the report's own files are gone" test -z "$(find tank -name 'report_*')"
+cat > cup.json <<'END'
+{ "domain": { "min": [-0.1, -0.1, -0.1], "max": [0.3, 0.3, 0.3] }, "spacing": 0.02, "end_time": 0.004, "gravity": [0, 0, -9.81],
+  "fluids": [ { "name": "water", "fill": [ { "vessel": "cup", "level": 0.1 } ] } ],
+  "bodies": [ { "name": "cup", "vessel": true, "box": { "min": [0, 0, 0], "max": [0.2, 0.2, 0.2] } } ] }
+END
+expect 0 "" run cup.json --out cup --quiet
+expect 0 "has no values" report cup
+check "walls of a vessel are no fins" test "$(grep -c 'A vessel, at least' cup/report.html)" = 1 -a \
+    "$(grep -c 'Fins and plates' cup/report.html)" = 0
 # The page as it is, and a script that says what is missing; the page's own rule forbids any address.
 sed "s/default-src 'none'/default-src 'none'; script-src 'unsafe-inline'/" tank/report.html > looked.html
 cat >> looked.html <<'END'
