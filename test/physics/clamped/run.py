@@ -13,7 +13,9 @@ Timoshenko w L^4/(8 E I) + w L^2/(2 k G A), k = 5/6: 0.380 m. The surface of the
 beside them. Rod: reaches from the middle of a hub of 0.2 m to 0.6 m, E = 1e6 Pa, turns once per second. Force on the hub
 rho h w^2 R^2/2, stretch of its free part rho w^2/(2 E) (R^2 L - (R^3 - r^3)/3); means over ten swings. Weight: a free body of
 100 kg/m hangs on a bar between it and a body that stands, E = 1e6 Pa, 1 m/s2, and is let go. Sinking (M + m/2) g L/(E A), period
-2 pi L/(b c) with b tan b = m/M, where M is all below the free part of the bar, of mass m. The bar is two solids, one per body.""")
+2 pi L/(b c) with b tan b = m/M, where M is all below the free part of the bar, of mass m. The bar is two solids, one per body.
+Raft: a free body of 500 kg/m3, 0.2 m x 0.04 m, holds a slab of 200 kg/m3 that reaches 0.05 m below it. Both have the draft of
+their weight.""")
 
 BEAM = 1000*9.81*4*(10**4/(8*1e8*16/12) + 10**2/(2*5/6*0.5e8*4))      # m
 
@@ -98,6 +100,24 @@ def weight(across, density):
     return (y[0] - middle)/((M + m/2)*g*L/(modulus*area)), (up[-1] - up[0])/(len(up) - 1)/period
 
 
+def raft(method):
+    """Height of the middle of the body over still water at rest, m, mean over the second second."""
+    out = case.run(f"raft_{method}", scene=case.write_scene(f"raft_{method}", {
+        "method": method, "dimension": 2, "domain": {"min": [0, 0], "max": [0.6, 0.4]}, "gravity": [0, -9.81],
+        "spacing": 0.01, "end_time": 2,
+        "fluids": [{"name": "water", "viscosity": 0.5, "fill": [{"box": {"min": [0, 0], "max": [0.6, 0.2]}}]}],
+        "bodies": [{"name": "raft", "box": {"min": [0.2, 0.19], "max": [0.4, 0.23]}, "density": 500, "dynamics": "free"}],
+        "solids": [{"name": "foam", "density": 200, "youngs_modulus": 1e5, "clamped_to": "raft",
+                    "fill": [{"box": {"min": [0.22, 0.14], "max": [0.38, 0.2]}}]}],
+        "output": {"interval": 0.05}}))
+    table = read_table(out/"bodies.csv")
+    return mean([y for t, y in zip(table["time"], table["position_y"]) if t > 1])
+
+
+# Of 5.92 kg/m: the slab, of which 0.05 m lie in water or air, dips in. The water had 0.110 m2 at the start.
+DISPLACED = 0.2*0.04*0.5 + 0.16*0.06*0.2
+RAFT = (0.110 + DISPLACED)/0.6 - DISPLACED/0.16 + 0.05 + 0.02
+
 for across, aside in case.pick([(8, 0)], [(8, 0), (8, 0.5), (16, 0), (16, 0.5)]):
     sinking, force, moment = beam(across, aside)
     text = f"beam, {across} cells high, {aside} cells aside"
@@ -113,4 +133,8 @@ for across, density in case.pick([(4, 5000)], [(4, 5000), (8, 5000), (8, 500)]):
     text = f"weight of {density} kg/m3, {across} cells wide"
     case.figure(f"{text}: sinking over theory", sinking, "1 within 0.02", abs(sinking - 1) <= 0.02)
     case.figure(f"{text}: period over theory", period, "1 within 0.02", abs(period - 1) <= 0.02)
+for method in case.pick([], ["dfsph", "isph"]):
+    height = raft(method)
+    # Drafts of bodies are good to half a spacing (theory/rigid.md).
+    case.figure(f"raft by {method}: height, m", height, f"{RAFT:.4f} within 0.005", abs(height - RAFT) <= 0.005)
 case.finish()
