@@ -4,6 +4,7 @@
 # times, with TOBI_ISA = v2, v3 and v4 (the psABI levels: SSE4.2, AVX2, AVX-512); elsewhere once, as
 # v2 and without any machine flag. src/exec picks one set when the program starts. Everything else is
 # compiled for the plain architecture, so the program starts on any machine of that architecture.
+# The sanitizers have one set too, for AVX2, as v2: the checks make these files slow to compile.
 # v4 keeps to 256-bit registers: eight float lanes on every set, hence the same bits.
 
 # What an object library of rooms is compiled with.
@@ -19,11 +20,17 @@ function(tobi_isa_objects out)
     set(flags_v2 "")
     set(sets v2)
     if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
-        set(sets v2 v3 v4)
-        set(flags_v2 -march=x86-64-v2)
-        set(flags_v3 -march=x86-64-v3)
-        set(flags_v4 -march=x86-64-v4 -mprefer-vector-width=256)
+        if(TOBI_SANITIZE)
+            set(flags_v2 -march=x86-64-v3)
+        else()
+            set(sets v2 v3 v4)
+            set(flags_v2 -march=x86-64-v2)
+            set(flags_v3 -march=x86-64-v3)
+            set(flags_v4 -march=x86-64-v4 -mprefer-vector-width=256)
+        endif()
     endif()
+    list(LENGTH sets count)
+    target_compile_definitions(tobi_flags INTERFACE TOBI_ISA_SETS=${count})
     set(objects)
     if(files)
         foreach(isa IN LISTS sets)

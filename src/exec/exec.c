@@ -12,7 +12,7 @@ enum { RADIX_BITS = 11, RADIX = 1 << RADIX_BITS };
 
 static int find_isa(void)
 {
-#if defined(__x86_64__)
+#if TOBI_ISA_SETS == 3
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd")) return 4;

@@ -8,6 +8,13 @@
 
 enum { TOBI_BLOCK = 512 };
 
+/* Address of one of the tables of kernels NAME_v2, NAME_v3, NAME_v4, as many as cmake/isa.cmake has made. */
+#if TOBI_ISA_SETS == 3
+#define TOBI_TABLE_OF(ISA, NAME) ((ISA) >= 4 ? &NAME##_v4 : (ISA) == 3 ? &NAME##_v3 : &NAME##_v2)
+#else
+#define TOBI_TABLE_OF(ISA, NAME) ((void)(ISA), &NAME##_v2)
+#endif
+
 /* A kernel: runs over [begin, end) of one block. totals[0] to [sums - 1] are summed over all blocks,
    totals[6] to [5 + maxima] are maxima (start at 0); all eight are zero on entry, and a kernel writes no
    others. The kernels.def of a room lists its kernels; its kernels.h has them by name, for one instruction

@@ -3,12 +3,4 @@
    nobody wants wider is compiled three times too. */
 #include "linear/kernels.h"
 
-const tobi_linear_kernels *tobi_linear_kernels_for(int isa)
-{
-#if defined(__x86_64__)
-    if (isa >= 4) return &tobi_linear_kernels_v4;
-    if (isa == 3) return &tobi_linear_kernels_v3;
-#endif
-    (void)isa;
-    return &tobi_linear_kernels_v2;
-}
+const tobi_linear_kernels *tobi_linear_kernels_for(int isa) { return TOBI_TABLE_OF(isa, tobi_linear_kernels); }

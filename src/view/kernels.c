@@ -2,12 +2,4 @@
    Drawback: a kernel that nobody wants wider is compiled three times too. */
 #include "view/kernels.h"
 
-const tobi_view_kernels *tobi_view_kernels_for(int isa)
-{
-#if defined(__x86_64__)
-    if (isa >= 4) return &tobi_view_kernels_v4;
-    if (isa == 3) return &tobi_view_kernels_v3;
-#endif
-    (void)isa;
-    return &tobi_view_kernels_v2;
-}
+const tobi_view_kernels *tobi_view_kernels_for(int isa) { return TOBI_TABLE_OF(isa, tobi_view_kernels); }

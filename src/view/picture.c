@@ -102,15 +102,7 @@ const char *tobi_picture_stage_name(int stage)
     return stage >= 0 && stage < TOBI_PICTURE_STAGES ? names[stage] : NULL;
 }
 
-const tile_kernels *tile_kernels_for(int isa)
-{
-#if defined(__x86_64__)
-    if (isa >= 4) return &tile_kernels_v4;
-    if (isa == 3) return &tile_kernels_v3;
-#endif
-    (void)isa;
-    return &tile_kernels_v2;
-}
+const tile_kernels *tile_kernels_for(int isa) { return TOBI_TABLE_OF(isa, tile_kernels); }
 
 /* All that is drawn. */
 typedef struct scene {

@@ -26,12 +26,12 @@ static tobi_world *make_world(const char *method, int pool, int threads, double 
     solid.youngs_modulus = 2e4;
     solid.density = density;
     for (int a = 0; a < 3; a++) {
-        w.domain_max[a] = pool ? 0.2 : 0.5;
+        w.domain_max[a] = !pool ? 0.5 : a < 2 ? 0.16 : 0.2;
         if (!pool) w.gravity[a] = 0;
         water.box_min[a] = pool ? 0 : 0.05;
-        water.box_max[a] = pool && a < 2 ? 0.2 : pool ? 0.1 : 0.11;
-        jelly.box_min[a] = a == 2 ? 0.12 : 0.06;
-        jelly.box_max[a] = a == 2 ? 0.17 : 0.11;
+        water.box_max[a] = pool && a < 2 ? 0.16 : pool ? 0.1 : 0.11;
+        jelly.box_min[a] = a < 2 ? 0.06 : pool ? 0.105 : 0.12;
+        jelly.box_max[a] = a < 2 ? 0.11 : pool ? 0.155 : 0.17;
     }
     if (!pool) water.velocity[2] = 0.5;
     OK(tobi_world_create(&w, NULL, &world, &err));
@@ -90,13 +90,13 @@ static void the_same_bits(void **state)
     for (int k = 0; k < METHODS; k++) {
         tobi_world *one = make_world(methods[k], 1, 1, 700), *three = make_world(methods[k], 1, 3, 700),
                    *later = make_world(methods[k], 1, 2, 700);
-        OK(tobi_world_advance(one, 0.06, NULL, &err));
-        OK(tobi_world_advance(three, 0.06, NULL, &err));
+        OK(tobi_world_advance(one, 0.03, NULL, &err));
+        OK(tobi_world_advance(three, 0.03, NULL, &err));
         if (tobi_world_hash(one) != tobi_world_hash(three)) fail_msg("%s: threads differ", methods[k]);
         OK(tobi_world_save(one, "soft.h5", &err));
         OK(tobi_world_load(later, "soft.h5", &err));
-        OK(tobi_world_advance(one, 0.09, NULL, &err));
-        OK(tobi_world_advance(later, 0.09, NULL, &err));
+        OK(tobi_world_advance(one, 0.045, NULL, &err));
+        OK(tobi_world_advance(later, 0.045, NULL, &err));
         if (tobi_world_hash(one) != tobi_world_hash(later)) fail_msg("%s: a restart differs", methods[k]);
         tobi_world_destroy(one);
         tobi_world_destroy(three);
@@ -147,20 +147,20 @@ static void momentum_with_a_body(void **state)
 static void bits_with_a_body(void **state)
 {
     (void)state;
-    double down = -0.8;
-    const double low[3] = { 0.09, 0.06, 0.175 }, high[3] = { 0.15, 0.11, 0.195 };
+    double down = -1.5;
+    const double low[3] = { 0.09, 0.06, 0.16 }, high[3] = { 0.15, 0.11, 0.18 };
     for (int k = 0; k < 2*METHODS - 1; k++) {        /* eisph has no free bodies */
         const char *method = methods[k/2];
         tobi_world *one = make_world(method, 1, 1, 700), *three = make_world(method, 1, 3, 700),
                    *later = make_world(method, 1, 2, 700), *all[] = { one, three, later };
         for (int w = 0; w < 3; w++) add_box(all[w], low, high, k%2 || k == 2*METHODS - 2 ? &down : NULL);
-        OK(tobi_world_advance(one, 0.05, NULL, &err));
-        OK(tobi_world_advance(three, 0.05, NULL, &err));
+        OK(tobi_world_advance(one, 0.03, NULL, &err));
+        OK(tobi_world_advance(three, 0.03, NULL, &err));
         if (tobi_world_hash(one) != tobi_world_hash(three)) fail_msg("%s: threads differ", method);
         OK(tobi_world_save(one, "soft_body.h5", &err));
         OK(tobi_world_load(later, "soft_body.h5", &err));
-        OK(tobi_world_advance(one, 0.08, NULL, &err));
-        OK(tobi_world_advance(later, 0.08, NULL, &err));
+        OK(tobi_world_advance(one, 0.045, NULL, &err));
+        OK(tobi_world_advance(later, 0.045, NULL, &err));
         if (tobi_world_hash(one) != tobi_world_hash(later)) fail_msg("%s: a restart differs", method);
         assert_true(one->system[0].info.particles_lost == 0);
         for (int w = 0; w < 3; w++) tobi_world_destroy(all[w]);
