@@ -3,4 +3,7 @@
    nobody wants wider is compiled three times too. */
 #include "linear/kernels.h"
 
-const tobi_linear_kernels *tobi_linear_kernels_for(int isa) { return TOBI_TABLE_OF(isa, tobi_linear_kernels); }
+const tobi_linear_kernels *tobi_linear_kernels_for(int isa)
+{
+    return TOBI_TABLE_OF(isa, tobi_linear_kernels);
+}

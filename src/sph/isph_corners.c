@@ -19,7 +19,7 @@ typedef struct corner_face {
     int32_t point;                   /* nearest; -1: that of the closest point of the surface       */
     double place[3], normal[3];      /* of a point of the face                                      */
     double sum[3];                   /* m2/m3: sum of area W n over its points                      */
-    double share;                    /* 1: sum of area W lambda/sigma over them                     */
+    double share;                    /* 1: sum of area W lambda/sigma over them and their images    */
 } corner_face;
 
 /* A particle's look for faces, the closest first. */
@@ -63,6 +63,34 @@ static int find_next(void *user, int32_t k)
     return 0;
 }
 
+/* Mirrors a place of face f in another face, along f. */
+static void mirror_along(const corner_face *f, const corner_face *other, double place[3])
+{
+    const double turn = vec3_dot(other->normal, f->normal), size2 = 1 - turn*turn;
+    double along[3], apart[3];
+    memcpy(along, other->normal, sizeof along);
+    vec3_add_scaled(along, along, -turn, f->normal);
+    vec3_sub(apart, place, other->place);
+    vec3_add_scaled(place, place, -2*vec3_dot(apart, other->normal)/size2, along);
+}
+
+/* Sum of W of a point of face f and of its images in the other faces: behind them the body goes on. */
+static double weigh_point(const corner_look *l, int f, int32_t k)
+{
+    const tobi_smoothing_constants *c = &l->s->smoothing;
+    double sum = 0;
+    for (int images = 0; images < 1 << l->faces; images++) {
+        double place[3], r[3];
+        if (images >> f & 1) continue;
+        memcpy(place, l->b->point[k], sizeof place);
+        for (int g = 0; g < l->faces; g++)
+            if (images >> g & 1) mirror_along(&l->face[f], &l->face[g], place);
+        for (int a = 0; a < 3; a++) r[a] = a < c->dimension ? l->x[a] - place[a] : 0;
+        sum += tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(vec3_dot(r, r)));
+    }
+    return sum;
+}
+
 static int add_point(void *user, int32_t k)
 {
     corner_look *l = user;
@@ -76,7 +104,8 @@ static int add_point(void *user, int32_t k)
     for (int f = 0; f < l->faces; f++) {
         if (vec3_dot(n, l->face[f].normal) < ONE_FACE) continue;
         for (int a = 0; a < 3; a++) l->face[f].sum[a] += w*n[a];
-        l->face[f].share += sigma > 0 ? w*tobi_wall_table_at(c->plane.lambda, at)/sigma : 0;
+        l->face[f].share += sigma > 0 ? l->b->area[k]*c->plane_scale*weigh_point(l, f, k)*
+                                        tobi_wall_table_at(c->plane.lambda, at)/sigma : 0;
     }
     return 0;
 }

@@ -17,6 +17,8 @@ typedef struct isph_image {
     lane weight;                     /* 1; less at edges                                            */
     lane normal[3];
     lane normal_velocity, velocity_change;     /* m/s: of the surface along the normal; its change  */
+    int corners;                     /* 1: some are images in several planes, for which             */
+    lane corner_velocity[3], corner_change[3]; /* m/s: twice the velocity of those planes; its change */
 } isph_image;
 
 /* Gravity and what acts besides on particle i at rest, m/s2. */
@@ -57,6 +59,9 @@ TOBI_FN void isph_velocity(const isph_view *v, const tobi_neighbors *n, const is
     for (int a = 0; a < 3; a++) across += 2*(u[a] - v->gravity_dt*m->gravity[a])*m->normal[a];
     across -= 2*(m->normal_velocity - (v->gravity_dt > 0 ? m->velocity_change : lane_set(0)));
     for (int a = 0; a < 3; a++) u[a] -= across*m->normal[a];
+    if (!m->corners) return;
+    for (int a = 0; a < 3; a++)
+        u[a] += m->corner_velocity[a] - (v->gravity_dt > 0 ? 2*m->corner_change[a] : lane_set(0));
 }
 
 /* Pa: pressure of the image less that of j, as of liquid at rest, eq. (7). */
@@ -66,7 +71,11 @@ TOBI_FN lane isph_pressure_difference(const isph_view *v, const isph_image *m, c
     const lane *d = m->displacement, *n = m->normal;
     const lane still = (float)v->density*(m->gravity[0]*d[0] + m->gravity[1]*d[1] + m->gravity[2]*d[2]);
     if (kind == ISPH_SIDE) return still;
-    return still - (float)(v->density/v->dt)*m->velocity_change*(n[0]*d[0] + n[1]*d[1] + n[2]*d[2]);
+    const lane single = still -
+                        (float)(v->density/v->dt)*m->velocity_change*(n[0]*d[0] + n[1]*d[1] + n[2]*d[2]);
+    if (!m->corners) return single;
+    const lane *c = m->corner_change;
+    return single - (float)(v->density/v->dt)*(c[0]*d[0] + c[1]*d[1] + c[2]*d[2]);
 }
 
 /* m2, out of reach of every kernel. */
