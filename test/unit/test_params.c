@@ -227,7 +227,8 @@ static void models_know_their_constants(void **state)
     }
     tobi_solid_list(TOBI_SAND, text, sizeof text);
     assert_string_equal(text, "density or mass, youngs_modulus, poissons_ratio, friction_angle, "
-                        "friction_rise, grain_diameter, inertial_number, damping, surface_friction");
+                        "friction_rise, grain_diameter, inertial_number, damping, surface_friction, "
+                        "clamped_to");
 }
 
 static void methods_are_found_by_name(void **state)
