@@ -88,20 +88,26 @@ static tobi_status reserve(mpm_clamp *c, int bodies, int64_t count, tobi_error *
                    : tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld held particles", (long long)count);
 }
 
-/* The held particles as they are sorted now. */
+/* The held particles as they are sorted now, by body. */
 static tobi_status list_held(mpm_clamp *c, const tobi_system *s, tobi_error *err)
 {
+    const int bodies = s->sim->body_count;
     int64_t count = 0;
     for (int64_t i = 0; i < s->particles.count; i++) count += mpm_clamp_body(s, i) >= 0;
     c->count = 0;
-    TOBI_TRY(reserve(c, s->sim->body_count, count, err));
-    for (int k = 0; k < c->bodies; k++) {
-        c->first[k] = c->count;
-        if (!count) continue;
-        for (int64_t i = 0; i < s->particles.count; i++)
-            if (mpm_clamp_body(s, i) == k) c->held[c->count++].particle = (int32_t)i;
+    TOBI_TRY(reserve(c, bodies, count, err));
+    memset(c->first, 0, ((size_t)bodies + 1)*sizeof *c->first);
+    if (!count) return TOBI_OK;
+    for (int64_t i = 0; i < s->particles.count; i++) {     /* how many of the body before */
+        const int body = mpm_clamp_body(s, i);
+        if (body >= 0 && body + 1 < bodies) c->first[body + 2]++;
     }
-    c->first[c->bodies] = c->count;
+    for (int k = 2; k <= bodies; k++) c->first[k] += c->first[k - 1];
+    for (int64_t i = 0; i < s->particles.count; i++) {     /* each body's begin moves to its end */
+        const int body = mpm_clamp_body(s, i);
+        if (body >= 0) c->held[c->first[body + 1]++].particle = (int32_t)i;
+    }
+    c->count = count;
     return TOBI_OK;
 }
 
