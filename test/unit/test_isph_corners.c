@@ -100,7 +100,7 @@ static void planes_of_a_vessel(void **state)
     tobi_scene_free(scene);
 }
 
-/* 0.4 m/s without images in two and three faces at once. */
+/* 0.74 m/s without images in two and three faces at once. */
 static void water_rests_in_a_vessel(void **state)
 {
     tobi_error err = { 0 };
