@@ -20,22 +20,22 @@ their weight.""")
 BEAM = 1000*9.81*4*(10**4/(8*1e8*16/12) + 10**2/(2*5/6*0.5e8*4))      # m
 
 
-def beam(across, aside):
-    """Sinking of the end of the axis, force and moment on the body over those of the weight."""
+def beam(across, aside, deep=1):
+    """Sinking of the end of the axis, force and moment on the body over those of the weight. deep: m that it reaches into it."""
     cell = 2/across
     d, shift = cell/2, aside*cell
-    out = case.solids(f"beam_{across}_{aside}", {
+    out = case.solids(f"beam_{across}_{aside}_{deep}", {
         "domain": {"min": [-3 - shift, -2], "max": [11, 4]}, "gravity": [0, -9.81], "spacing": d, "end_time": 2.5,
         "bodies": [{"name": "wall", "box": {"min": [-2, -1], "max": [0, 3]}}],
         "solids": [{"name": "beam", "density": 1000, "youngs_modulus": 1e8, "poissons_ratio": 0, "damping": 12,
-                    "clamped_to": "wall", "fill": [{"box": {"min": [-1, 0], "max": [10, 2]}}]}],
+                    "clamped_to": "wall", "fill": [{"box": {"min": [-deep, 0], "max": [10, 2]}}]}],
         "output": {"interval": 0.125, "fields": ["rest_position"]}})
     series = read_series(out)
     rest, now = (read_vtu(series[k][1])["Points"] for k in (0, -1))
     ends = [[now[i + 1] - rest[i + 1] for i in range(0, len(rest), 3)
              if lower < rest[i] < upper and abs(rest[i + 1] - 1) < 0.5] for lower, upper in ((10 - 2*d, 10), (10 - 4*d, 10 - 2*d))]
     table = read_table(out/"bodies.csv")
-    weight = 1000*9.81*2*11
+    weight = 1000*9.81*2*(10 + deep)
     at = mean([now[i] for i in range(0, len(now), 3)])      # of the centre of mass; that of the body is at -1
     return (-1.5*mean(ends[0]) + 0.5*mean(ends[1]), -table["mean_pressure_force_y"][-1]/weight,
             -table["mean_pressure_torque_z"][-1]/(weight*(at + 1)))
@@ -124,6 +124,8 @@ for across, aside in case.pick([(8, 0)], [(8, 0), (8, 0.5), (16, 0), (16, 0.5)])
     case.figure(f"{text}: sinking, m", sinking, "0.380 within 2 %", abs(sinking/BEAM - 1) <= 0.02)
     case.figure(f"{text}: force over weight", force, "1 within 0.001", abs(force - 1) <= 0.001)
     case.figure(f"{text}: moment over that of the weight", moment, "1 within 0.001", abs(moment - 1) <= 0.001)
+for across in case.pick([], [8, 16]):
+    case.state(f"beam on the face of the body, one layer held, {across} cells high: sinking, m", beam(across, 0, 0)[0])
 for across in case.pick([4], [4, 8]):
     force, stretch = rod(across)
     case.figure(f"rod, {across} cells high: force over m w^2 r", force, "1 within 0.01", abs(force - 1) <= 0.01)

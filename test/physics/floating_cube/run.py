@@ -13,9 +13,7 @@ from the cube, from the volume of the particles there (J; the water is 0.5 % thi
 less the cube's centre of mass, plus half a side; mean over the last fifth. Archimedes: 0.8 of the height.
 
 What holds a cube off it is the water: each particle keeps a volume of its own, J, and patterns of J within a cell, which the nodes hardly
-feel as pressure, hold small shears as a paste does, the more the stiffer the water (rows with 2e6 Pa). They last: with three times the
-time, a quarter of the step, 4 x 4 particles in a cell, FLIP or no damping drafts from 0.5 and 1 stay 0.03 to 0.06 apart, and as much without tension
-(J never above 1).""")
+feel as pressure, hold small shears as a paste does, the more the stiffer the water (rows with 2e6 Pa). They last.""")
 
 SIDE, TANK, DEEP = 0.1, 0.4, 0.2
 
