@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <string.h>
-#include "tobiuo/scene.h"
+#include "mistakes.h"
 
 static const char text[] =
     "{ \"method\": \"mlsmpm\", \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] },\n"
@@ -33,20 +33,7 @@ static const char *const expected[] = {
 static void every_mistake_is_told(void **state)
 {
     (void)state;
-    const int count = sizeof expected/sizeof *expected;
-    tobi_scene *scene;
-    tobi_report *report;
-    tobi_error err = { 0 };
-    assert_int_equal(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, &report, &err),
-                     TOBI_INVALID);
-    for (int k = 0; k < count; k++) {
-        int found = 0;
-        for (int i = 0; i < tobi_report_count(report); i++)
-            found += strstr(tobi_report_line(report, i), expected[k]) != NULL;
-        if (found < 1) fail_msg("not told: %s", expected[k]);
-    }
-    assert_int_equal(tobi_report_count(report), count);
-    tobi_report_free(report);
+    expect_mistakes(text, expected, sizeof expected/sizeof *expected);
 }
 
 int main(void)

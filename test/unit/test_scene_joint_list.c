@@ -5,8 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <string.h>
-#include "scene/report.h"
-#include "scene/scene.h"
+#include "mistakes.h"
 
 static const char text[] =
     "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 0.1, \"end_time\": 1,"
@@ -58,28 +57,11 @@ static const char *const both[] = {
     "joints: are not known yet where a liquid and solids of mlsmpm are in one scene",
 };
 
-static void expect(const char *scene_text, const char *const *lines, int count)
-{
-    tobi_scene *scene;
-    tobi_report *report;
-    tobi_error err = { 0 };
-    assert_int_equal(tobi_scene_parse("s.json", scene_text, strlen(scene_text), NULL, &scene, &report, &err),
-                     TOBI_INVALID);
-    for (int k = 0; k < count; k++) {
-        int found = 0;
-        for (int i = 0; i < tobi_report_count(report); i++)
-            found += strstr(tobi_report_line(report, i), lines[k]) != NULL;
-        if (found < 1) fail_msg("not told: %s", lines[k]);
-    }
-    assert_int_equal(tobi_report_count(report), count);
-    tobi_report_free(report);
-}
-
 static void every_mistake_is_told(void **state)
 {
     (void)state;
-    expect(text, expected, sizeof expected/sizeof *expected);
-    expect(with_solids, both, 1);
+    expect_mistakes(text, expected, sizeof expected/sizeof *expected);
+    expect_mistakes(with_solids, both, 1);
 }
 
 int main(void)

@@ -5,8 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <string.h>
-#include "scene/report.h"
-#include "scene/scene.h"
+#include "mistakes.h"
 
 static const char text[] =
     "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 0.1, \"end_time\": 1,"
@@ -41,20 +40,7 @@ static const char *const expected[] = {
 static void every_mistake_is_told(void **state)
 {
     (void)state;
-    const int count = sizeof expected/sizeof *expected;
-    tobi_scene *scene;
-    tobi_report *report;
-    tobi_error err = { 0 };
-    assert_int_equal(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, &report, &err),
-                     TOBI_INVALID);
-    for (int k = 0; k < count; k++) {
-        int found = 0;
-        for (int i = 0; i < tobi_report_count(report); i++)
-            found += strstr(tobi_report_line(report, i), expected[k]) != NULL;
-        if (found != 1) fail_msg("%d times: %s", found, expected[k]);
-    }
-    assert_int_equal(tobi_report_count(report), count);
-    tobi_report_free(report);
+    expect_mistakes(text, expected, sizeof expected/sizeof *expected);
 }
 
 int main(void)

@@ -18,6 +18,7 @@
 #include "tobiuo/drawing.h"
 #include "tobiuo/surface.h"
 #include "tobiuo/run.h"
+#include "stripes_rig.h"
 #include "world/world.h"
 
 static const double one[3] = { 1, 1, 1 }, up[3] = { 0, 0, 1 };
@@ -222,20 +223,7 @@ static void test_files(void **state)
     }
 }
 
-/* Six stripes of one colour each, 60 pixels wide. */
-static const uint8_t stripe[6][3] = { { 230, 20, 20 }, { 20, 200, 20 }, { 20, 20, 230 },
-                                      { 220, 220, 20 }, { 220, 20, 220 }, { 20, 220, 220 } };
 static const double core[3] = { 120, 120, 120 };
-
-static void write_stripes(const char *path)
-{
-    enum { W = 360, H = 40 };
-    static uint8_t rgb[H][W][3];
-    png_image image = { .version = PNG_IMAGE_VERSION, .width = W, .height = H, .format = PNG_FORMAT_RGB };
-    for (int y = 0; y < H; y++)
-        for (int x = 0; x < W; x++) memcpy(rgb[y][x], stripe[x/60], 3);
-    assert_true(png_image_write_to_file(&image, path, 0, rgb, 0, NULL));
-}
 
 /* The same stripes; of four inks or one gray the first channels. */
 static void write_jpeg(const char *path, J_COLOR_SPACE space, int channels)
@@ -347,34 +335,6 @@ static tobi_world *make_textured(int faces, double opacity, tobi_status expected
     assert_int_equal(tobi_world_add_solid(w, &solid, &fill, 1, err), expected);
     if (expected == TOBI_OK) assert_int_equal(tobi_world_add_body(w, &body, err), TOBI_OK);
     return w;
-}
-
-/* The stripe that a colour is of, by its direction; -1: gray, a core. */
-static int find_stripe(const uint8_t *rgb)
-{
-    double best = 0, size = sqrt((double)rgb[0]*rgb[0] + rgb[1]*rgb[1] + rgb[2]*rgb[2]);
-    int found = -1;
-    const int most = rgb[0] > rgb[1] ? rgb[0] > rgb[2] ? rgb[0] : rgb[2] : rgb[1] > rgb[2] ? rgb[1] : rgb[2];
-    const int least = rgb[0] < rgb[1] ? rgb[0] < rgb[2] ? rgb[0] : rgb[2] : rgb[1] < rgb[2] ? rgb[1] : rgb[2];
-    if (most - least < 30) return -1;
-    for (int k = 0; k < 6; k++) {
-        double dot = 0, own = 0;
-        for (int c = 0; c < 3; c++) {
-            dot += (double)rgb[c]*stripe[k][c];
-            own += (double)stripe[k][c]*stripe[k][c];
-        }
-        if (dot/(size*sqrt(own)) > best) best = dot/(size*sqrt(own)), found = k;
-    }
-    return found;
-}
-
-static void add_field(tobi_world *w, tobi_moment *m, const char *name, int components)
-{
-    tobi_moment_field *f = &m->fields[m->field_count++];
-    tobi_error err = { 0 };
-    *f = (tobi_moment_field){ strdup(name), components,
-                              calloc((size_t)(m->count*components), sizeof(double)) };
-    if (tobi_world_read(w, TOBI_FLUID, name, f->values, m->count*components, &err)) fail_msg("%s", err.text);
 }
 
 /* What stands in the picture at the middle of the cube that an eye sees from -y; half: only particles with x
