@@ -28,6 +28,7 @@ typedef struct isph_walk {
     isph_plane plane[ISPH_PLANES];
     int planes;                      /* of the pair                                                 */
     int face[ISPH_IMAGES][ISPH_FACES], images, at;   /* the planes of each, -1: none; those done     */
+    double whole[ISPH_IMAGES];       /* 1: how much there is of one in several planes               */
     int used;                        /* images in the group                                         */
     int32_t index[8];
     int64_t entry[8];
@@ -90,9 +91,12 @@ TOBI_FN void isph_walk_list_images(isph_walk *w)
     }
     for (int p = 0; p < w->planes; p++)
         for (int q = p + 1; q < w->planes; q++) {
-            if (!(isph_planes_meet(w, p, q) > 0)) continue;
+            const double both = isph_planes_meet(w, p, q);
+            if (!(both > 0)) continue;
             for (int r = q; r < w->planes && w->images < ISPH_IMAGES; r++) {
-                if (r > q && !(isph_planes_meet(w, p, r)*isph_planes_meet(w, q, r) > 0)) continue;
+                const double whole = r == q ? both : both*isph_planes_meet(w, p, r)*isph_planes_meet(w, q, r);
+                if (!(whole > 0)) continue;
+                w->whole[w->images] = whole;
                 f[w->images][0] = p;
                 f[w->images][1] = q;
                 f[w->images][2] = r > q ? r : -1;
@@ -246,15 +250,14 @@ TOBI_FN int isph_corner_close(isph_corner *c, const isph_walk *w, const int side
 
 /* The image in two or three planes at once, and at sides: a turn by half about the line in which two meet,
    a mirror in the point in which three do. It is the same for i and j, at any angle of the corner. */
-TOBI_FN void isph_walk_add_corner(isph_walk *w, const int face[ISPH_FACES], const int side[3])
+TOBI_FN void isph_walk_add_corner(isph_walk *w, const int face[ISPH_FACES], double whole, const int side[3])
 {
     const int k = w->used, faces = face[2] < 0 ? 2 : 3;
     isph_corner c;
     double x[3], speed[3], change[3], r2 = 0;
     c.faces = 0;
-    c.weight = isph_planes_meet(w, face[0], face[1]);
+    c.weight = whole;
     c.at[2] = c.moved[2] = c.change[2] = 0;
-    if (faces == 3) c.weight *= isph_planes_meet(w, face[0], face[2])*isph_planes_meet(w, face[1], face[2]);
     for (int f = 0; f < faces; f++)
         if (!isph_corner_add_face(&c, w, &w->plane[face[f]], side)) return;
     if (!isph_corner_close(&c, w, side)) return;
@@ -285,11 +288,11 @@ TOBI_FN int isph_walk_fill(isph_walk *w)
     w->used = w->corners = 0;
     for (;;) {
         for (; w->at < w->images*w->reflections->total && w->used < TOBI_LANES; w->at++) {
-            const int *face = w->face[w->at/w->reflections->total];
+            const int m = w->at/w->reflections->total, *face = w->face[m];
             int side[3];
             isph_choose_sides(w->reflections, w->at%w->reflections->total, side);
             if (face[1] < 0) isph_walk_add_image(w, &w->plane[face[0]], side);
-            else isph_walk_add_corner(w, face, side);
+            else isph_walk_add_corner(w, face, w->whole[m], side);
         }
         if (w->used == TOBI_LANES) return 1;
         for (;; w->k++) {
