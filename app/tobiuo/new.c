@@ -252,7 +252,6 @@ static int complain_choice(const family_choice *c, tobi_report *report, const to
     if (fclose(out) != 0) exit(complain("out of memory"));
     complain("no scene is written; given:%s", given);
     free(given);
-    tobi_report_free(report);
     return EXIT_ERROR;
 }
 
@@ -265,6 +264,7 @@ static int prove(const family_choice *c, const char *text, size_t size)
     tobi_status status = tobi_scene_parse(c->family->name, text, size, NULL, &scene, &report, &err);
     if (status == TOBI_OK) status = try_scene(scene, &err);
     const int code = status == TOBI_OK ? 0 : complain_choice(c, report, &err);
+    tobi_report_free(report);
     tobi_scene_free(scene);
     return code;
 }
