@@ -71,7 +71,7 @@ typedef struct input {
     tobi_moment moment;
     tobi_surface_def def;
     tobi_surface_field field[TOBI_SURFACE_FIELD_LIMIT];
-    double *speed, *color;
+    double *speed, *color, *spacing;
     int32_t *group;
     tobi_looks looks;
     tobi_picture_skin *skins;          /* of materials with a texture, or NULL */
@@ -102,9 +102,10 @@ static void free_input(input *in)
     free(in->speed);
     free(in->color);
     free(in->group);
+    free(in->spacing);
     free(in->skin);
     in->skin = NULL;
-    in->speed = in->color = NULL;
+    in->speed = in->color = in->spacing = NULL;
     in->group = NULL;
 }
 
@@ -122,6 +123,20 @@ static int make_groups(input *in)
             s < MATERIALS ? (int32_t)s : 0;
     }
     in->def.group = in->group;
+    return 0;
+}
+
+/* Of materials with a spacing of their own. */
+static int make_spacing(input *in)
+{
+    const tobi_moment *m = &in->moment;
+    const tobi_moment_field *material = find_field(m, "material");
+    if (!material || !tobi_looks_differ(&in->looks)) return 0;
+    in->spacing = malloc((size_t)m->count*sizeof *in->spacing + 1);
+    if (!in->spacing) return complain("out of memory");
+    for (int64_t i = 0; i < m->count; i++)
+        in->spacing[i] = 2*tobi_looks_radius(&in->looks, (int)material->values[i]);
+    in->def.spacings = in->spacing;
     return 0;
 }
 
@@ -188,7 +203,8 @@ static int read_input(const surface_options *o, const tobi_results *results, int
             in->moment.positions[i][0] = NAN;      /* out of the surface */
     in->def.particle_count = in->moment.count;
     in->def.positions = (const double (*)[3])in->moment.positions;
-    const int code = make_groups(in);
+    int code = make_groups(in);
+    if (code == 0) code = make_spacing(in);
     return code == 0 ? take_fields(o, in) : code;
 }
 

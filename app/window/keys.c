@@ -243,13 +243,14 @@ static int64_t find_particle(const viewer *v, double x, double y)
     const tobi_moment *m = v->moment ? moment_of(v->moment) : NULL;
     int64_t found = -1;
     double nearest = INFINITY;
+    const tobi_moment_field *material = m ? find_field(m, "material") : NULL;
     for (int64_t i = 0; m && i < m->count; i++) {
         double pixel[3], scale;
         if (is_clipped(&v->look, m->positions[i])) continue;
         if (tobi_looks_hides(&v->def.looks, m->time, m->positions[i])) continue;
         if (!camera_project(&v->look.camera, v->width, v->height, m->positions[i], pixel, &scale)) continue;
-        const double off = hypot(pixel[0] - x, pixel[1] - y), radius = fmax(3,
-                0.6*scale*v->def.looks.spacing);
+        const double own = tobi_looks_radius(&v->def.looks, material ? (int)material->values[i] : 0);
+        const double off = hypot(pixel[0] - x, pixel[1] - y), radius = fmax(3, 1.2*scale*own);
         const double depth = pixel[2] + (v->def.looks.dimension == 2 ? off : 0);
         if (off > radius || depth >= nearest) continue;
         nearest = depth;

@@ -15,6 +15,7 @@ typedef struct tobi_material_look {
     double color[3], core_color[3];    /* RGB, 0 to 255; -1 = none given                              */
     int    visible, liquid;
     int    kind;                       /* the first material with the same properties and colours     */
+    double spacing;                    /* m, of its particles; 0 = that of the looks                  */
     tobi_picture_skin skin;            /* of a solid with a texture; image NULL = none                */
     tobi_image *image;                 /* owned, and what the skin looks in                           */
     void  *skin_user;
@@ -46,7 +47,7 @@ typedef struct tobi_inlet_look {
 /* What of a world pictures need and does not change. Lists owned: tobi_looks_free. */
 typedef struct tobi_looks {
     int    dimension, threads;
-    double box_min[3], box_max[3], gravity[3], spacing;      /* m, m/s2 */
+    double box_min[3], box_max[3], gravity[3], spacing;      /* m, m/s2; the spacing is the largest */
     int    material_count, body_count, inlet_count;
     tobi_material_look *materials;
     tobi_body_look *bodies;            /* and lines behind them */
@@ -58,6 +59,10 @@ TOBI_API tobi_status tobi_world_looks(const tobi_world *world, tobi_looks *looks
 TOBI_API void tobi_looks_free(tobi_looks *looks);
 /* Red, green, blue (sRGB) and opacity, 0 to 1, of a part of a material (0 skin, 1 core, 2 face of a cut). */
 TOBI_API void tobi_looks_color(const tobi_looks *looks, int material, int part, float color[4]);
+
+/* 1: materials differ in their spacings. Half the spacing of a material, m, of any number. */
+TOBI_API int tobi_looks_differ(const tobi_looks *looks);
+TOBI_API double tobi_looks_radius(const tobi_looks *looks, int material);
 
 /* 1: a particle at x, m, waits in an inlet that does not flow at this time. Pictures and surfaces leave it
    out; results have it. */

@@ -87,6 +87,8 @@ typedef struct tobi_picture {
     const float (*palette)[3];         /* sRGB, the colour map from value_min to value_max; NULL = blue */
     int palette_count;                 /* at least 1 with a palette                                     */
     double radius;                     /* m, half the particle spacing                                  */
+    const double *radii;               /* m, of each particle, at most radius; of a group all have one;
+                                          NULL = all have radius                                        */
     double value_min, value_max;       /* of the colour map; equal = found from the values, from zero   */
     int look;                          /* TOBI_LOOK_*; in 2-D NATURAL is SURFACE                        */
     int clip;                          /* not 0: what is beyond a plane is not drawn                    */

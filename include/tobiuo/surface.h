@@ -31,6 +31,8 @@ typedef struct tobi_surface_def {
     const int32_t *group;              /* of each particle, below 2^20: one surface each; negative = left
                                           out; NULL = all are one                                        */
     double spacing;                    /* m between particles                                            */
+    const double *spacings;            /* m, of each particle, at most 16 different ones; those of
+                                          different spacing share no surface; NULL = all have spacing    */
     double cell;                       /* of the grid, in spacings, 0.1 to 2                             */
     int smoothing;                     /* rounds, 0 to 100                                               */
 

@@ -19,9 +19,11 @@ static tobi_status add_materials(const tobi_world *w, const tobi_system *s, tobi
                                  tobi_error *err)
 {
     const int first = tobi_world_first_material(w, s);
+    const double spacing = tobi_world_spacing(w, s);
     for (int k = 0; k < s->fluid_count; k++) {
         tobi_material_look *m = &looks->materials[looks->material_count++];
-        *m = (tobi_material_look){ .visible = s->fluid[k].visible, .liquid = 1, .kind = first + k };
+        *m = (tobi_material_look){ .visible = s->fluid[k].visible, .liquid = 1, .kind = first + k,
+                                   .spacing = spacing };
         for (int n = k - 1; n >= 0; n--)
             if (is_same_fluid(&s->fluid[n], &s->fluid[k])) m->kind = first + n;
         memcpy(m->color, s->fluid[k].color, sizeof m->color);
@@ -31,7 +33,7 @@ static tobi_status add_materials(const tobi_world *w, const tobi_system *s, tobi
         const tobi_solid_def *def = &s->solids[k].def;
         tobi_material_look *m = &looks->materials[looks->material_count++];
         *m = (tobi_material_look){ .visible = def->visible, .liquid = def->model == TOBI_LIQUID,
-                                   .kind = first + k };
+                                   .kind = first + k, .spacing = spacing };
         memcpy(m->color, def->color, sizeof m->color);
         memcpy(m->core_color, def->core_color, sizeof m->core_color);
         TOBI_TRY(tobi_skins_of_solid(w, k, looks->material_count - 1, looks, err));
@@ -116,9 +118,9 @@ tobi_status tobi_world_looks(const tobi_world *w, tobi_looks *looks, tobi_error 
     const tobi_world_def *def = &w->sim.def;
     const size_t materials = (size_t)tobi_world_first_material(w, w->system + w->system_count);
     tobi_record_name *body, *traction, *line;
-    *looks = (tobi_looks){ .dimension = def->dimension, .threads = w->sim.exec.threads,
-                           .spacing = w->started ? w->system[0].smoothing.spacing
-                                                 : tobi_fit_find(w, def->spacing).spacing };
+    *looks = (tobi_looks){ .dimension = def->dimension, .threads = w->sim.exec.threads };
+    for (int k = 0; k < w->system_count; k++)
+        looks->spacing = fmax(looks->spacing, tobi_world_spacing(w, &w->system[k]));
     for (int a = 0; a < 3; a++) {
         looks->box_min[a] = def->domain_min[a], looks->box_max[a] = def->domain_max[a];
         looks->gravity[a] = def->gravity[a];

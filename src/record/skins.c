@@ -79,7 +79,7 @@ tobi_status tobi_skins_of_solid(const tobi_world *w, int solid, int material, to
     skin->look = look;
     skin->look_flat = look_flat;
     skin->user = list;
-    skin->depth = depth_in_spacings*looks->spacing;
+    skin->depth = depth_in_spacings*m->spacing;
     skin->image = m->image = tobi_image_share(image);
     return TOBI_OK;
 }

@@ -11,6 +11,7 @@
 typedef struct tobi_record_surface {
     double (*position)[3];       /* NAN: what waits in an inlet */
     int32_t *group;
+    double *spacing;             /* m; NULL: all have that of the looks */
     double *values[TOBI_SURFACE_FIELD_LIMIT];
 } tobi_record_surface;
 
@@ -19,6 +20,7 @@ void tobi_record_free_surface(tobi_record_surface *s)
     if (!s) return;
     for (int f = 0; f < TOBI_SURFACE_FIELD_LIMIT; f++) free(s->values[f]);
     free(s->group);
+    free(s->spacing);
     free(s->position);
     free(s);
 }
@@ -73,6 +75,20 @@ static tobi_status find_groups(tobi_run *run, int32_t *group, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Of materials with a spacing of their own. */
+static tobi_status find_spacings(const tobi_run *run, tobi_record_surface *s, int64_t count, tobi_error *err)
+{
+    const tobi_world *w = run->world;
+    int64_t to = 0;
+    if (!tobi_looks_differ(&run->looks)) return TOBI_OK;
+    s->spacing = malloc((size_t)count*sizeof *s->spacing + 1);
+    if (!s->spacing) return tobi_fail(err, TOBI_NO_MEMORY, "surface: out of memory");
+    for (int k = 0; k < w->system_count; k++)
+        for (int64_t n = 0; n < w->system[k].particles.count; n++)
+            s->spacing[to++] = w->system[k].smoothing.spacing;
+    return TOBI_OK;
+}
+
 tobi_status tobi_record_take_surface(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
     const int64_t n = snapshot->set[TOBI_SET_FLUID].count;
@@ -81,6 +97,7 @@ tobi_status tobi_record_take_surface(tobi_run *run, tobi_snapshot *snapshot, tob
     if (s) s->position = malloc((size_t)n*sizeof *s->position + 1);
     if (!s || !s->group || !s->position) return tobi_fail(err, TOBI_NO_MEMORY, "surface: out of memory");
     TOBI_TRY(tobi_record_find_looks(run, err));
+    TOBI_TRY(find_spacings(run, s, n, err));
     for (int64_t i = 0; i < n; i++) {
         const double time = tobi_world_time(run->world);
         memcpy(s->position[i], snapshot->set[TOBI_SET_FLUID].position[i], sizeof s->position[i]);
@@ -107,7 +124,8 @@ tobi_status tobi_record_write_surface(tobi_run *run, const tobi_snapshot *snapsh
     d.particle_count = set->count;
     d.positions = (const double (*)[3])snapshot->skin->position;
     d.group = snapshot->skin->group;
-    d.spacing = run->world->system[0].smoothing.spacing;
+    d.spacing = run->looks.spacing;
+    d.spacings = snapshot->skin->spacing;
     d.cell = run->output.surface_cell;
     d.smoothing = run->output.surface_smoothing;
     d.threads = w->threads;

@@ -231,6 +231,7 @@ struct surface_request {
     int     skin_number;         /* of its image                                                   */
     vec     plain;
     float   level;               /* of the kernel sum, 1 inside: small keeps what is thin          */
+    double  radius;              /* m, half the spacing of these particles                         */
     float   drop;                /* m, radius of a ball for a particle of its own; 0 = none        */
     bool    joins;               /* particles that touch others are within the surface             */
 };

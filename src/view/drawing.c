@@ -18,6 +18,7 @@ void tobi_drawing_free(tobi_drawing *d)
     free(d->tint);
     free(d->opaque);
     free(d->group);
+    free(d->radii);
     free(d->meshes);
     free(d->paths);
     free(d->skins);
@@ -72,6 +73,21 @@ int tobi_looks_hides(const tobi_looks *looks, double time, const double x[3])
         if (faces && at[0] < 0 && at[0] >= -in->depth && !flows_at(in, time)) return 1;
     }
     return 0;
+}
+
+int tobi_looks_differ(const tobi_looks *looks)
+{
+    int differ = 0;
+    for (int k = 0; k < looks->material_count; k++)
+        differ |= tobi_looks_radius(looks, k) != 0.5*looks->spacing;
+    return differ;
+}
+
+double tobi_looks_radius(const tobi_looks *looks, int material)
+{
+    const int known = material >= 0 && material < looks->material_count;
+    const double own = known ? looks->materials[material].spacing : 0;
+    return 0.5*(own > 0 ? own : looks->spacing);
 }
 
 static tobi_status no_memory(tobi_error *err)
@@ -137,24 +153,32 @@ static void take_skin(tobi_drawing *d, int64_t i, int64_t to, int material)
     memcpy(d->rest[to], d->at_rest->values + 3*i, sizeof d->rest[to]);
 }
 
+static tobi_status make_arrays(tobi_drawing *d, int arrows, tobi_error *err)
+{
+    const size_t n = (size_t)d->moment->count + 1;
+    const int differ = tobi_looks_differ(d->looks);
+    d->positions = malloc(n*sizeof *d->positions);
+    d->values = malloc(n*sizeof *d->values);
+    d->opaque = malloc(n);
+    d->group = malloc(n*sizeof *d->group);
+    if (arrows) d->velocities = malloc(n*sizeof *d->velocities);
+    if (differ) d->radii = malloc(n*sizeof *d->radii);
+    const int enough = d->positions && d->values && d->opaque && d->group && (!arrows || d->velocities) &&
+                       (!differ || d->radii);
+    return enough ? TOBI_OK : no_memory(err);
+}
+
 /* A value for each particle that is shown, its place and velocity. */
 static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
 {
     const tobi_moment *m = d->moment;
-    const size_t n = (size_t)m->count + 1;
     const tobi_moment_field *velocity = find_field(m, "velocity");
     const tobi_moment_field *field = d->view->field ? find_field(m, d->view->field) : velocity;
     if (d->view->field && !field)
         return tobi_fail(err, TOBI_NOT_FOUND, "the output has no field '%s'; output.fields of the scene "
                          "writes it", d->view->field);
     const int arrows = (d->view->arrows || d->view->streamlines > 0) && velocity;
-    d->positions = malloc(n*sizeof *d->positions);
-    d->values = malloc(n*sizeof *d->values);
-    d->opaque = malloc(n);
-    d->group = malloc(n*sizeof *d->group);
-    if (arrows) d->velocities = malloc(n*sizeof *d->velocities);
-    if (!d->positions || !d->values || !d->opaque || !d->group || (arrows && !d->velocities))
-        return no_memory(err);
+    TOBI_TRY(make_arrays(d, arrows, err));
     TOBI_TRY(make_skins(d, err));
     for (int64_t i = 0; i < m->count; i++) {
         const int material = number_at(d->material, i, 0), piece = number_at(d->piece, i, -1);
@@ -164,6 +188,7 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
         memcpy(d->positions[to], m->positions[i], sizeof *d->positions);
         for (int k = 0; arrows && k < 3; k++) d->velocities[to][k] = (float)velocity->values[3*i + k];
         d->opaque[to] = !look->liquid;
+        if (d->radii) d->radii[to] = tobi_looks_radius(d->looks, material);
         if (d->skin) take_skin(d, i, to, material);
         d->group[to] = look->liquid ? -look->kind : piece >= 0 ? 1 + piece : -material;
         d->values[to] = !d->has_palette ? field ? value_at(field, i) : 0
@@ -316,6 +341,7 @@ static void set_picture(tobi_drawing *d)
     p->positions = (const double (*)[3])d->positions;
     p->values = d->values;
     p->radius = 0.5*s->spacing;
+    p->radii = d->radii;
     if (solids) p->opaque = d->opaque;
     if (solids || liquids) p->group = d->group;
     p->value_max = d->has_palette ? d->colors - 1 : color_speed(s);

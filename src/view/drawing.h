@@ -14,6 +14,7 @@ struct tobi_drawing {
     float *values;                     /* of the field; with a palette its colour's number */
     uint8_t *opaque;
     int32_t *group;                    /* kind, material or piece                       */
+    double *radii;                     /* m; NULL: all particles have one               */
     float (*palette)[3];
     int colors;                        /* in the palette                                */
     int has_palette;                   /* 0: colours by a field                         */

@@ -21,13 +21,13 @@ static void free_grid(grid *s)
 static void place_grid(grid *s, const surface_request *r, double low[3], double high[3])
 {
     const tobi_picture *f = r->f;
-    s->edge = (r->count > many ? 2.5 : 2)*f->radius;
+    s->edge = (r->count > many ? 2.5 : 2)*r->radius;
     for (double blocks = INFINITY; blocks > BLOCKS_AT_MOST; s->edge *= 2) {
         blocks = 1;
         for (int k = 0; k < 3; k++) blocks *= 2 + (high[k] - low[k])/(BLOCK_EDGE*s->edge);
         if (blocks <= BLOCKS_AT_MOST) break;
     }
-    s->reach = (float)(reach_in_spacings*fmax(2*f->radius, s->edge)/s->edge);
+    s->reach = (float)(reach_in_spacings*fmax(2*r->radius, s->edge)/s->edge);
     const double margin = ceil(s->reach) + 2;
     for (int k = 0; k < 3; k++) {
         const double first = floor((low[k] - f->box_min[k])/s->edge - margin) + 0.5;
@@ -47,7 +47,7 @@ static bool find_extent(const surface_request *r, double low[3], double high[3])
         const double *p = f->positions[r->row[i]];
         int inside = 0;
         for (int k = 0; k < 3; k++)
-            inside += p[k] >= f->box_min[k] - 4*f->radius && p[k] <= f->box_max[k] + 4*f->radius;
+            inside += p[k] >= f->box_min[k] - 4*r->radius && p[k] <= f->box_max[k] + 4*r->radius;
         for (int k = 0; k < 3 && inside == 3; k++) {
             low[k] = p[k] < low[k] ? p[k] : low[k];
             high[k] = p[k] > high[k] ? p[k] : high[k];
@@ -63,7 +63,7 @@ static void place_particles(grid *s, const surface_request *r)
         const double *p = f->positions[r->row[i]];
         int inside = 0;
         for (int k = 0; k < 3; k++) {
-            inside += p[k] >= f->box_min[k] - 4*f->radius && p[k] <= f->box_max[k] + 4*f->radius;
+            inside += p[k] >= f->box_min[k] - 4*r->radius && p[k] <= f->box_max[k] + 4*r->radius;
             s->place[i][k] = (float)((p[k] - s->low[k])/s->edge);
         }
         if (inside < 3) s->place[i][0] = -1;
@@ -438,7 +438,7 @@ tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, cons
     const bool any = find_extent(r, low, high);
     if (any) {
         place_grid(&s, r, low, high);
-        const float spacings = s.reach*(float)(s.edge/(2*r->f->radius));
+        const float spacings = s.reach*(float)(s.edge/(2*r->radius));
         s.per_particle = 1/(spacings*spacings*spacings*12.566371f*16/315);
         s.place = malloc((size_t)(r->count + 1)*sizeof *s.place);
         colors = r->color ? malloc((size_t)(r->count + 1)*sizeof *colors) : NULL;

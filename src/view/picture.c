@@ -52,6 +52,22 @@ static tobi_status check_mesh(const char *path, const tobi_picture_mesh *m, int 
     return TOBI_OK;
 }
 
+static tobi_status check_particles(const char *path, const tobi_picture *f, tobi_error *err)
+{
+    if (f->particle_count < 0 || f->particle_count > INT32_MAX || (f->particle_count > 0 && !f->positions))
+        return tobi_fail(err, TOBI_INVALID, "%s: %" PRId64 " particles cannot be drawn", path,
+                         f->particle_count);
+    if (f->particle_count > 0 && !(f->radius > 0 && isfinite(f->radius)))
+        return tobi_fail(err, TOBI_INVALID, "%s: a particle radius of %g m, must be greater than 0", path,
+                         f->radius);
+    for (int64_t i = 0; f->radii && i < f->particle_count; i++)
+        if (!(f->radii[i] > 0 && f->radii[i] <= f->radius))
+            return tobi_fail(err, TOBI_INVALID, "%s: particle %" PRId64 " has a radius of %g m, must be "
+                             "greater than 0 and at most that of the picture, %g m", path, i, f->radii[i],
+                             f->radius);
+    return TOBI_OK;
+}
+
 static tobi_status check_frame(const char *path, const tobi_picture *f, tobi_error *err)
 {
     if (f->width < 16 || f->height < 16 || f->width > 8192 || f->height > 8192)
@@ -65,12 +81,7 @@ static tobi_status check_frame(const char *path, const tobi_picture *f, tobi_err
     for (int k = 0; k < f->dimension; k++)
         if (!isfinite(f->box_min[k]) || !isfinite(f->box_max[k]) || !(f->box_min[k] < f->box_max[k]))
             return tobi_fail(err, TOBI_INVALID, "%s: the box is empty along %c", path, "xyz"[k]);
-    if (f->particle_count < 0 || f->particle_count > INT32_MAX || (f->particle_count > 0 && !f->positions))
-        return tobi_fail(err, TOBI_INVALID, "%s: %" PRId64 " particles cannot be drawn", path,
-                         f->particle_count);
-    if (f->particle_count > 0 && !(f->radius > 0 && isfinite(f->radius)))
-        return tobi_fail(err, TOBI_INVALID, "%s: a particle radius of %g m, must be greater than 0", path,
-                         f->radius);
+    TOBI_TRY(check_particles(path, f, err));
     if (f->dimension == 3 && !(f->field_of_view >= 1 && f->field_of_view <= 150))
         return tobi_fail(err, TOBI_INVALID, "%s: a field of view of %g degrees, allowed are 1 to 150", path,
                          f->field_of_view);
@@ -253,7 +264,10 @@ static bool sort_by_group(const tobi_picture *f, surface_request *r, int32_t *ro
 /* Of solids: what is stretched keeps together. */
 static const float solid_level = 0.38f;
 
-/* A surface around each group of particles, in 2-D a region; *within: the eye is in one. */
+static double radius_of(const tobi_picture *f, int64_t i) { return f->radii ? f->radii[i] : f->radius; }
+
+/* A surface around each group of particles, in 2-D a region; all.drop is in radii; *within: the eye is in
+   one. */
 static tobi_status add_groups(scene *s, surface_request all, geometry *g, geometry *drops, bool *within,
                               tobi_error *err)
 {
@@ -266,6 +280,8 @@ static tobi_status add_groups(scene *s, surface_request all, geometry *g, geomet
             if (f->group && f->group[s->row[end]] != f->group[s->row[begin]]) break;
         surface_request r = all;
         r.row += begin, r.count = end - begin;
+        r.radius = radius_of(f, r.row[0]);
+        r.drop *= (float)r.radius;
         const int skin = s->rest ? f->skin[r.row[0]] : -1;
         rest_map map;
         if (skin >= 0 && skin < f->skin_count && f->skins[skin].image) {
@@ -289,7 +305,7 @@ static tobi_status add_solids(scene *s, tobi_error *err)
     bool within;
     all.plain = (vec){ 0.20f, 0.30f, 0.45f };
     all.level = solid_level;
-    all.drop = 1.1f*(float)s->f->radius;
+    all.drop = 1.1f;
     return add_groups(s, all, &s->solids, &s->solids, &within, err);
 }
 
@@ -304,7 +320,7 @@ static tobi_status add_particles(scene *s, tobi_error *err)
         if (!view_is_shown(f, i) || !(fabsf(p.x) + fabsf(p.y)
                                       + fabsf(p.z) < 1e15f*(float)f->radius)) continue;
         const vec color = s->color ? s->color[i] : view_color_of(f, 0);
-        g->balls[g->ball_count++] = (ball){ p, (float)f->radius, color };
+        g->balls[g->ball_count++] = (ball){ p, (float)radius_of(f, i), color };
     }
     return TOBI_OK;
 }
@@ -343,7 +359,7 @@ static tobi_status add_surfaces(scene *s, tobi_error *err)
     }
     if (f->opaque || f->look) TOBI_TRY(add_solids(s, err));
     surface_request r = choose(s, false);
-    r.drop = 0.9f*(float)f->radius;
+    r.drop = 0.9f;
     r.joins = true;
     TOBI_TRY(add_groups(s, r, &s->water, &s->drops, &s->c.submerged, err));
     TOBI_TRY(view_project(&s->solids, &s->c.camera, f->threads, err));
@@ -363,7 +379,7 @@ static tobi_status add_discs(scene *s, tobi_error *err)
         for (int k = 0; k < 2; k++) {
             p.z = size*(float)(k + 10);
             const vec color = s->color ? s->color[i] : view_color_of(f, 0);
-            g->balls[g->ball_count++] = (ball){ p, (k ? 1.45f : 0.95f)*(float)f->radius,
+            g->balls[g->ball_count++] = (ball){ p, (k ? 1.45f : 0.95f)*(float)radius_of(f, i),
                                                 vec_scale(k ? 0.8f : 1, color) };
         }
     }

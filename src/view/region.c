@@ -34,13 +34,13 @@ static bool place_nodes(plane *p)
     for (int64_t i = 0; i < p->r->count; i++) {
         const double *x = f->positions[p->r->row[i]];
         for (int k = 0; k < 2; k++) {
-            if (!(x[k] >= f->box_min[k] - 4*f->radius && x[k] <= f->box_max[k] + 4*f->radius)) continue;
+            if (!(x[k] >= f->box_min[k] - 4*p->r->radius && x[k] <= f->box_max[k] + 4*p->r->radius)) continue;
             low[k] = fmin(low[k], x[k]);
             high[k] = fmax(high[k], x[k]);
         }
     }
     if (!(low[0] <= high[0] && low[1] <= high[1])) return false;
-    p->edge = f->radius;
+    p->edge = p->r->radius;
     for (int k = 0; k < 2; k++) nodes *= (high[k] - low[k])/p->edge + 2*REACH + 4;
     if (nodes > MOST_NODES) p->edge *= sqrt(nodes/MOST_NODES);
     for (int k = 0; k < 2; k++) {
@@ -85,7 +85,7 @@ static void add_particle(plane *p, int64_t i)
 static void limit_nodes(plane *p)
 {
     const tobi_picture *f = p->r->f;
-    const float spacings = (float)(REACH*p->edge/(2*f->radius)), level = p->r->level;
+    const float spacings = (float)(REACH*p->edge/(2*p->r->radius)), level = p->r->level;
     const float per_particle = 4/(spacings*spacings*3.14159265f);
     for (int n = 0; n < p->size[1]; n++)
         for (int m = 0; m < p->size[0]; m++) {
@@ -182,7 +182,7 @@ static bool add_discs(const plane *p, geometry *g)
         const vec color = r->skin ? view_skin_color(r, r->row[i]) : r->color ? r->color[r->row[i]] : r->plain;
         for (int rim = 0; rim < 2; rim++) {
             place.z = (rim ? 1.1f : 1)*p->behind;
-            g->balls[g->ball_count++] = (ball){ place, (rim ? 1.2f : 0.9f)*(float)r->f->radius,
+            g->balls[g->ball_count++] = (ball){ place, (rim ? 1.2f : 0.9f)*(float)r->radius,
                                                 vec_scale(rim ? 0.5f : 1, color) };
         }
     }

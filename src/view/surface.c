@@ -1,5 +1,5 @@
-/* The surface of particles: checks, then the stages one after the other over arrays in memory. Drawback: all
-   blocks of the level set are kept until the triangles are made. */
+/* The surface of particles: checks, then the stages one after the other over arrays in memory, for each
+   spacing of particles in turn. Drawback: all blocks of the level set are kept until there are triangles. */
 #include "view/surface.h"
 #include <inttypes.h>
 #include <math.h>
@@ -47,6 +47,10 @@ static tobi_status check_def(const tobi_surface_def *d, tobi_error *err)
     if (d->smoothing < 0 || d->smoothing > 100)
         return tobi_fail(err, TOBI_INVALID, "surface: %d rounds of smoothing, allowed are 0 to 100",
                          d->smoothing);
+    for (int64_t i = 0; d->spacings && i < d->particle_count; i++)
+        if (!(d->spacings[i] > 0) || !isfinite(d->spacings[i]))
+            return tobi_fail(err, TOBI_INVALID, "surface: particle %" PRId64 " has a spacing of %g m, must "
+                             "be greater than 0", i, d->spacings[i]);
     for (int64_t i = 0; d->group && i < d->particle_count; i++)
         if (d->group[i] >= 1 << 20)
             return tobi_fail(err, TOBI_INVALID, "surface: particle %" PRId64 " is of group %d, allowed are "
@@ -83,16 +87,22 @@ void surface_free_work(surface_work *w)
     tobi_exec_free(&w->exec);
 }
 
-tobi_status tobi_surface_make(const tobi_surface_def *def, tobi_surface **surface, tobi_error *err)
+/* Of particles of one spacing. */
+static tobi_status make_one(const tobi_surface_def *def, tobi_surface **surface, tobi_error *err)
 {
-    TOBI_NEED(surface, "surface");
-    *surface = NULL;
-    TOBI_NEED(def, "def");
-    TOBI_TRY(check_def(def, err));
     surface_work w = { .def = def };
     tobi_status status = tobi_exec_init(&w.exec, def->threads, err);
     if (status == TOBI_OK) status = tobi_exec_reserve(&w.exec, 8*def->particle_count + TOBI_BLOCK, err);
     if (status == TOBI_OK) status = run_stages(&w, surface, err);
     surface_free_work(&w);
     return status;
+}
+
+tobi_status tobi_surface_make(const tobi_surface_def *def, tobi_surface **surface, tobi_error *err)
+{
+    TOBI_NEED(surface, "surface");
+    *surface = NULL;
+    TOBI_NEED(def, "def");
+    TOBI_TRY(check_def(def, err));
+    return def->spacings ? surface_make_each(def, make_one, surface, err) : make_one(def, surface, err);
 }

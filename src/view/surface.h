@@ -59,6 +59,10 @@ static inline int surface_in_cap(const uint8_t *sides, const int32_t t[3])
 
 /* surface.c: the arrays, not w itself. */
 void surface_free_work(surface_work *w);
+/* surface_spacings.c: makes the surface of the particles of each spacing and puts all into one. */
+typedef tobi_status surface_maker(const tobi_surface_def *def, tobi_surface **surface, tobi_error *err);
+tobi_status surface_make_each(const tobi_surface_def *def, surface_maker *make, tobi_surface **surface,
+                              tobi_error *err);
 /* surface_bins.c */
 tobi_status surface_place_points(surface_work *w, tobi_error *err);
 /* Sorts keys below limit; order[k]: the old place. */

@@ -93,6 +93,13 @@ tobi_status tobi_world_add_system(tobi_world *w, const tobi_method *method, cons
     return TOBI_OK;
 }
 
+double tobi_world_spacing(const tobi_world *w, const tobi_system *s)
+{
+    if (w->started) return s->smoothing.spacing;
+    const double common = tobi_fit_find(w, w->sim.def.spacing).spacing;
+    return s->method->solids ? mpm_spacing(s->def, common) : common;
+}
+
 tobi_system *tobi_world_solids(const tobi_world *w)
 {
     for (int k = 0; k < w->system_count; k++)

@@ -62,6 +62,8 @@ tobi_status tobi_world_start_system(tobi_world *w, tobi_system *s, tobi_error *e
 void tobi_world_free_system(tobi_system *s);
 /* The system of the solids, or of the fluids; NULL if there is none. */
 tobi_system *tobi_world_solids(const tobi_world *w);
+/* m, of the particles of a system, also before the start. */
+double tobi_world_spacing(const tobi_world *w, const tobi_system *s);
 tobi_system *tobi_world_fluids(const tobi_world *w);
 /* The number of the body of this name, -1: there is none. */
 int tobi_world_find_body(const tobi_world *w, const char *name);

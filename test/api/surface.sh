@@ -72,6 +72,30 @@ parts = g["meshes"][0]["primitives"]
 assert [g["materials"][p["material"]].get("alphaMode") for p in parts] == ["BLEND"], parts
 END
 
+# A solid whose particles are nearer to each other than the water's keeps its volume.
+cat > fine.json <<'END'
+{ "domain": {"min": [0, 0, 0], "max": [1, 0.3, 0.4]}, "gravity": [0, 0, 0], "spacing": 0.02, "end_time": 0.001,
+  "mlsmpm": {"spacing": 0.01},
+  "fluids": [{"name": "water", "fill": [{"box": {"min": [0, 0, 0], "max": [0.4, 0.3, 0.2]}}]}],
+  "solids": [{"name": "ball", "youngs_modulus": 1e5,
+              "fill": [{"sphere": {"centre": [0.7, 0.15, 0.2], "radius": 0.08}}]}],
+  "output": {"interval": 0.001} }
+END
+expect 0 "" run fine.json --out fine --quiet
+expect 0 "" surface fine --last --format obj
+check "a solid of finer particles" $python - <<'END'
+import math
+rows = [l.split() for l in open("fine/surface/surface_000001.obj")]
+at = [[float(x) for x in r[1:4]] for r in rows if r[:1] == ["v"]]
+volume = 0
+for r in rows:
+    if r[:1] != ["f"]: continue
+    a, b, c = (at[int(k.split("/")[0]) - 1] for k in r[1:4])
+    if a[0] < 0.55: continue
+    volume += (a[0]*(b[1]*c[2] - b[2]*c[1]) + a[1]*(b[2]*c[0] - b[0]*c[2]) + a[2]*(b[0]*c[1] - b[1]*c[0]))/6
+assert abs(volume/(4/3*math.pi*0.08**3) - 1) < 0.02, volume/(4/3*math.pi*0.08**3)
+END
+
 # The same bits for any number of threads; glTF as a reader of JSON sees it.
 expect 0 "" surface dam --format glb --field speed --threads 1
 mv dam/surface.glb one.glb

@@ -38,6 +38,7 @@ static tobi_status make_skinned(const tobi_surface_def *d, tobi_surface **s, tob
 
 static tobi_status make_and_write(const rig_points *p, tobi_error *err)
 {
+    static double spacing[7*6*5];
     const tobi_surface_field field = { "place", 3, &p->position[0][0] };
     tobi_surface_def d = tobi_default_surface();
     tobi_surface *s = NULL;
@@ -55,6 +56,8 @@ static tobi_status make_and_write(const rig_points *p, tobi_error *err)
     tobi_surface_movie_free(movie);
     tobi_surface_free(s);
     s = NULL;
+    d.spacings = spacing;                   /* two passes that become one mesh */
+    for (int64_t i = 0; i < p->count; i++) spacing[i] = i > 0 ? 0.01 : 0.02;
     if (status == TOBI_OK) status = make_skinned(&d, &s, err);
     tobi_surface_free(s);
     return status;
