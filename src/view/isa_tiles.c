@@ -406,7 +406,7 @@ static void find_front(const painting *p, int64_t tile, layer *l)
 }
 
 /* A face of glass: its points to the batch, on the asked side of the water and before what is opaque. */
-static void add_glass(const painting *p, int32_t item, const square *q, const float *front, glass_layer *l,
+static void add_glass(const painting *p, int32_t item, const square *q, const float *front, glass_tile *t,
                       batch *b)
 {
     const canvas *c = p->c;
@@ -426,10 +426,10 @@ static void add_glass(const painting *p, int32_t item, const square *q, const fl
             const float near = nearness_at(&f, px + 0.5f, py + 0.5f), z = depth_of(&c->camera, near);
             const bool over = near > front[k] && !c->submerged;
             if (over != p->over || z >= c->depth[(int64_t)py*c->width + (int64_t)px]) continue;
-            b->pixel[b->count] = k;
+            b->pixel[b->count] = find_layer(t, k, &f, near);
             b->weight[b->count] = cover;
             add_point(c, p->g, b, item, px + 0.5f, py + 0.5f);
-            if (is_full(b)) shade_glass(c, l, b);
+            if (is_full(b)) shade_glass(c, t, b);
         }
 }
 
@@ -437,23 +437,23 @@ static void glass_tiles(const void *view, int64_t begin, int64_t end)
 {
     const painting *p = view;
     layer front;
-    glass_layer l;
+    glass_tile t;
     batch b = { .count = 0 };
     for (int64_t tile = begin; tile < end; tile++) {
         const square q = { (float)((int)(tile%p->t->across)*TILE), (float)((int)(tile/p->t->across)*TILE),
                            TILE, 1 };
         int across, down;
         if (p->t->first[tile] == p->t->first[tile + 1]) continue;
-        memset(&l, 0, sizeof l);
+        memset(t.count, 0, sizeof t.count);
         find_front(p, tile, &front);
         for (int64_t i = p->t->first[tile]; i < p->t->first[tile + 1]; i++)
-            add_glass(p, p->t->item[i], &q, front.nearness, &l, &b);
-        shade_glass(p->c, &l, &b);
+            add_glass(p, p->t->item[i], &q, front.nearness, &t, &b);
+        shade_glass(p->c, &t, &b);
         tile_pixels(p->c, &q, &across, &down);
         for (int y = 0; y < down; y++)
             for (int x = 0; x < across; x++) {
                 const int64_t k = ((int64_t)q.top + y)*p->c->width + (int64_t)q.left + x;
-                if (l.depth[y*TILE + x] > 0) p->out[k] = see_through(&l, y*TILE + x, p->out[k]);
+                if (t.count[y*TILE + x]) p->out[k] = see_through(&t, y*TILE + x, p->out[k]);
             }
     }
 }
