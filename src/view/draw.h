@@ -207,13 +207,13 @@ tobi_status view_paint_glass(canvas *c, const geometry *g, const geometry *water
 
 /* Straight lines in view space. */
 typedef struct segments { vec (*end)[2]; int64_t count, room; } segments;
-/* isolines.c; false: no memory. In 2-D, at f->isolines values between low and high. */
+/* isolines.c; false: no memory. In 2-D, of a group, at f->isolines values between low and high. */
+typedef struct surface_request surface_request;
 bool view_add_segment(segments *s, vec from, vec to);
-bool view_find_isolines(const canvas *c, const tobi_picture *f, double low, double high, segments *out);
+bool view_find_isolines(const canvas *c, const surface_request *r, double low, double high, segments *out);
 
 /* skin.c: colours that are what view_fit_rest finds become marks of images, from a vertex and a face on;
    false: no memory. The colour of one place. */
-typedef struct surface_request surface_request;
 bool view_put_skin(const canvas *c, const surface_request *r, geometry *g, int64_t vertex, int64_t face);
 vec view_skin_color(const surface_request *r, int64_t particle);
 

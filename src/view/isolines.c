@@ -1,5 +1,6 @@
-/* Isolines of a picture in 2-D: values of particles on the nodes of a grid, a mean by the kernel, then lines
-   in the two triangles of each cell. Drawback: lines end half a cell before the water does. */
+/* Isolines of a picture in 2-D, of each group of particles: values on the nodes of a grid, a mean by the
+   kernel, then lines in the two triangles of each cell. So values of a liquid and of a solid beside it do not
+   mix. Drawback: lines end half a cell before the water does. */
 #include "view/draw.h"
 #include <stdlib.h>
 
@@ -82,23 +83,43 @@ static bool add_cell(const canvas *c, const plane *p, int x, int y, int levels, 
     return true;
 }
 
-bool view_find_isolines(const canvas *c, const tobi_picture *f, double low, double high, segments *out)
+/* Nodes around a group, cells as from the domain's corner; false: no particle is in the domain. */
+static bool place_nodes(plane *p, const surface_request *r)
 {
-    plane p = { .edge = 2*f->radius };
+    const tobi_picture *f = r->f;
     double nodes = 1;
-    for (int k = 0; k < 2; k++) nodes *= (f->box_max[k] - f->box_min[k])/p.edge + 2;
-    if (nodes > MOST_NODES) p.edge *= sqrt(nodes/MOST_NODES);
+    p->edge = 2*r->radius;
+    for (int k = 0; k < 2; k++) nodes *= (f->box_max[k] - f->box_min[k])/p->edge + 2;
+    if (nodes > MOST_NODES) p->edge *= sqrt(nodes/MOST_NODES);
     for (int k = 0; k < 2; k++) {
-        p.low[k] = f->box_min[k];
-        p.size[k] = (int)((f->box_max[k] - f->box_min[k])/p.edge) + 2;
+        const int most = (int)((f->box_max[k] - f->box_min[k])/p->edge) + 1;
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t i = 0; i < r->count; i++) {
+            const double at = (f->positions[r->row[i]][k] - f->box_min[k])/p->edge;
+            if (at >= 0 && at <= most) low = fmin(low, at), high = fmax(high, at);
+        }
+        if (!(low <= high)) return false;
+        const int first = low > 2 ? (int)low - 2 : 0, last = high + 3 < most ? (int)high + 3 : most;
+        p->low[k] = f->box_min[k] + first*p->edge;
+        p->size[k] = last - first + 1;
     }
+    return true;
+}
+
+bool view_find_isolines(const canvas *c, const surface_request *r, double low, double high, segments *out)
+{
+    const tobi_picture *f = r->f;
+    plane p = { .sum = NULL };
+    if (!place_nodes(&p, r)) return true;
     const size_t n = (size_t)p.size[0]*(size_t)p.size[1];
     p.sum = calloc(n, sizeof *p.sum);
     p.weight = calloc(n, sizeof *p.weight);
     bool enough = p.sum && p.weight;
-    for (int64_t i = 0; enough && i < f->particle_count; i++)
+    for (int64_t k = 0; enough && k < r->count; k++) {
+        const int32_t i = r->row[k];
         if (view_is_shown(f, i) && isfinite(f->values[i]))
             add_value(&p, f->positions[i], (float)((f->values[i] - low)/(high - low)));
+    }
     for (int y = 0; enough && y + 1 < p.size[1]; y++)
         for (int x = 0; enough && x + 1 < p.size[0]; x++) enough = add_cell(c, &p, x, y, f->isolines, out);
     free(p.sum);

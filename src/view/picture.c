@@ -266,6 +266,21 @@ static const float solid_level = 0.38f;
 
 static double radius_of(const tobi_picture *f, int64_t i) { return f->radii ? f->radii[i] : f->radius; }
 
+/* Of sorted particles those of a group, from *begin on; *begin becomes its end. */
+static surface_request take_group(const surface_request *all, int64_t *begin)
+{
+    const tobi_picture *f = all->f;
+    const int32_t *row = all->row;
+    int64_t end = *begin + 1;
+    while (end < all->count && (!f->group || f->group[row[end]] == f->group[row[*begin]])) end++;
+    surface_request r = *all;
+    r.row += *begin, r.count = end - *begin;
+    r.radius = radius_of(f, r.row[0]);
+    r.drop *= (float)r.radius;
+    *begin = end;
+    return r;
+}
+
 /* A surface around each group of particles, in 2-D a region; all.drop is in radii; *within: the eye is in
    one. */
 static tobi_status add_groups(scene *s, surface_request all, geometry *g, geometry *drops, bool *within,
@@ -274,14 +289,9 @@ static tobi_status add_groups(scene *s, surface_request all, geometry *g, geomet
     const tobi_picture *f = s->f;
     *within = false;
     if (f->group && !sort_by_group(f, &all, s->row)) return no_memory(f, err);
-    for (int64_t begin = 0, end; begin < all.count; begin = end) {
+    for (int64_t begin = 0; begin < all.count;) {
         bool around;
-        for (end = begin + 1; end < all.count; end++)
-            if (f->group && f->group[s->row[end]] != f->group[s->row[begin]]) break;
-        surface_request r = all;
-        r.row += begin, r.count = end - begin;
-        r.radius = radius_of(f, r.row[0]);
-        r.drop *= (float)r.radius;
+        surface_request r = take_group(&all, &begin);
         const int skin = s->rest ? f->skin[r.row[0]] : -1;
         rest_map map;
         if (skin >= 0 && skin < f->skin_count && f->skins[skin].image) {
@@ -398,13 +408,25 @@ static tobi_status add_regions(scene *s, tobi_error *err)
     return add_groups(s, all, &s->solids, &s->solids, &within, err);
 }
 
+static tobi_status add_isolines(scene *s, tobi_error *err)
+{
+    const tobi_picture *f = s->f;
+    surface_request all = { .f = f, .row = s->row };
+    for (int64_t i = 0; i < f->particle_count; i++) s->row[all.count++] = (int32_t)i;
+    if (f->group && !sort_by_group(f, &all, s->row)) return no_memory(f, err);
+    for (int64_t begin = 0; begin < all.count;) {
+        const surface_request r = take_group(&all, &begin);
+        if (!view_find_isolines(&s->c, &r, s->low, s->high, &s->isolines)) return no_memory(f, err);
+    }
+    return TOBI_OK;
+}
+
 static tobi_status add_flat(scene *s, tobi_error *err)
 {
     const tobi_picture *f = s->f;
     TOBI_TRY(add_bodies(s, err));
     TOBI_TRY(f->look == TOBI_LOOK_PARTICLES ? add_discs(s, err) : add_regions(s, err));
-    if (f->isolines > 0 && f->values && f->particle_count > 0
-        && !view_find_isolines(&s->c, f, s->low, s->high, &s->isolines)) return no_memory(f, err);
+    if (f->isolines > 0 && f->values) TOBI_TRY(add_isolines(s, err));
     return view_project(&s->solids, &s->c.camera, f->threads, err);
 }
 

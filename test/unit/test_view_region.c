@@ -128,16 +128,19 @@ static void test_flat_pictures(void **state)
 /* Water between walls on three sides, 0.6 m wide and 0.4 m high; one particle alone. */
 enum { ACROSS = 60, UP = 40, MANY = ACROSS*UP + 1 };
 
-static void draw_water(int look, int clip, uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3])
+/* parts: each half is a group. */
+static void draw_parts(int look, int clip, int isolines, int parts, uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3])
 {
     static double place[MANY][3];
     static float value[MANY];
+    static int32_t group[MANY];
     static const float map[2][3] = { { 1, 0, 0 }, { 0, 0, 1 } };
     tobi_error err = { 0 };
     tobi_picture p = tobi_default_picture();
     for (int i = 0; i < MANY - 1; i++) {
         place[i][0] = 0.01*(i%ACROSS + 0.5), place[i][1] = 0.01*(i/ACROSS + 0.5);
         value[i] = i%ACROSS >= ACROSS/2;
+        group[i] = i%ACROSS >= ACROSS/2;
     }
     place[MANY - 1][0] = 0.3, place[MANY - 1][1] = 0.8;
     p.width = p.height = FLAT_SIDE;
@@ -146,6 +149,8 @@ static void draw_water(int look, int clip, uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3])
     p.particle_count = MANY;
     p.positions = (const double (*)[3])place;
     p.values = value;
+    p.group = parts ? group : NULL;
+    p.isolines = isolines;
     p.palette = map, p.palette_count = 2;
     p.value_max = 1;
     p.radius = 0.005;
@@ -153,6 +158,11 @@ static void draw_water(int look, int clip, uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3])
     p.clip = clip;
     p.clip_point[1] = 0.2, p.clip_normal[1] = 1;
     if (tobi_picture_draw(&p, &rgb[0][0][0], &err)) fail_msg("%s", err.text);
+}
+
+static void draw_water(int look, int clip, uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3])
+{
+    draw_parts(look, clip, 0, 0, rgb);
 }
 
 /* 1: the colour of the lower value, 2: of the higher, 0: neither. */
@@ -191,6 +201,21 @@ static void test_regions(void **state)
     assert_memory_not_equal(rgb, discs, sizeof rgb);
 }
 
+/* Isolines stand where a value changes in one liquid, not between two that have a value each. */
+static void test_isolines_of_groups(void **state)
+{
+    (void)state;
+    static uint8_t bare[FLAT_SIDE][FLAT_SIDE][3], lines[FLAT_SIDE][FLAT_SIDE][3];
+    for (int look = TOBI_LOOK_NATURAL; look <= TOBI_LOOK_PARTICLES; look += TOBI_LOOK_PARTICLES)
+        for (int parts = 0; parts < 2; parts++) {
+            draw_parts(look, 0, 0, parts, bare);
+            draw_parts(look, 0, 3, parts, lines);
+            int changed = 0;
+            for (int k = 0; k < FLAT_SIDE*FLAT_SIDE; k++) changed += memcmp(bare[0][k], lines[0][k], 3) != 0;
+            if (parts ? changed > 0 : changed < FLAT_SIDE/4) fail_msg("%d pixels, parts: %d", changed, parts);
+        }
+}
+
 /* Numbers of the colour bar and its label end before the picture does. */
 static void test_color_bar(void **state)
 {
@@ -220,7 +245,8 @@ int main(void)
 {
     char folder[] = "/tmp/tobiuo_region_XXXXXX", command[100];
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_regions), cmocka_unit_test(test_flat_pictures),
-                                        cmocka_unit_test(test_color_bar) };
+                                        cmocka_unit_test(test_color_bar),
+                                        cmocka_unit_test(test_isolines_of_groups) };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     if (chdir("/") == 0) snprintf(command, sizeof command, "rm -r %s", folder);
