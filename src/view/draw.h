@@ -102,6 +102,7 @@ typedef struct canvas {
     vec    *color;               /* of pixels                                                      */
     float  *alpha;               /* of pixels; NULL: the picture is opaque                         */
     float  *depth;               /* of pixels: of the nearest that is opaque, m; INFINITY = none   */
+    float  *ink;                 /* of pixels: cover of the parts of lines until all are known, or NULL */
     float  *front;               /* of pixels: of the water; NULL: no water                        */
     float  *nearness;            /* of samples, tile by tile, of what is opaque; NULL: no water    */
     uint8_t *covered;            /* of tiles: 1 if nearness is set there, else nothing is opaque   */
@@ -266,6 +267,8 @@ void view_draw_floor(canvas *c, const tobi_picture *f);
 void view_draw_box(canvas *c, const tobi_picture *f, bool over_water);
 /* A line of view space, `width` pixels wide. */
 void view_draw_line(canvas *c, vec p, vec q, float width, vec color, float alpha, bool over_water);
+/* Lines of one colour, whose parts and crossings are no darker than the rest; false: no memory. */
+bool view_draw_segments(canvas *c, const segments *s, float width, vec color, float alpha);
 
 /* shadow.c */
 tobi_status view_make_shadow(canvas *c, const tobi_picture *frame, const geometry *g, tobi_error *err);

@@ -2,6 +2,7 @@
    edges of their own. Drawback: lines are not seen bent through water. */
 #include "view/draw.h"
 #include "view/shade.h"
+#include <stdlib.h>
 
 typedef struct background { const canvas *c; vec top, bottom; } background;
 
@@ -31,7 +32,8 @@ static void blend(canvas *c, int x, int y, float z, vec color, float alpha, bool
     const int64_t k = (int64_t)y*c->width + x;
     if (!(z <= c->depth[k])) return;
     if (over_water && !(z < c->front[k] && c->front[k] < INFINITY)) return;
-    c->color[k] = vec_mix(c->color[k], color, alpha);
+    if (c->ink) c->ink[k] = fmaxf(c->ink[k], alpha);
+    else c->color[k] = vec_mix(c->color[k], color, alpha);
 }
 
 /* A line of a width in pixels with soft edges, walked along its longer axis. */
@@ -64,6 +66,30 @@ void view_draw_line(canvas *c, vec p, vec q, float width, vec color, float alpha
             if (cover > 0) blend(c, steep ? o : m, steep ? m : o, z*0.9995f, color, alpha*cover, over_water);
         }
     }
+}
+
+typedef struct inking { canvas *c; vec color; } inking;
+
+static void put_ink(const void *view, int64_t begin, int64_t end)
+{
+    const inking *v = view;
+    canvas *c = v->c;
+    for (int64_t k = begin*c->width; k < end*c->width; k++)
+        if (c->ink[k] > 0) c->color[k] = vec_mix(c->color[k], v->color, c->ink[k]);
+}
+
+bool view_draw_segments(canvas *c, const segments *s, float width, vec color, float alpha)
+{
+    const inking view = { c, color };
+    if (s->count == 0) return true;
+    c->ink = calloc((size_t)c->width*(size_t)c->height, sizeof *c->ink);
+    if (!c->ink) return false;
+    for (int64_t k = 0; k < s->count; k++)
+        view_draw_line(c, s->end[k][0], s->end[k][1], width, color, alpha, false);
+    tobi_loop(c->threads, c->height, 0, put_ink, &view);
+    free(c->ink);
+    c->ink = NULL;
+    return true;
 }
 
 static void draw_line(canvas *c, const double from[3], const double to[3], float width, vec color,

@@ -466,22 +466,27 @@ static tobi_status make_water_planes(scene *s, tobi_error *err)
     return c->front && c->nearness && c->covered ? TOBI_OK : no_memory(s->f, err);
 }
 
-/* Isolines, and paths: those are seen through water. */
-static void draw_lines(scene *s)
+/* Seen through water. */
+static bool draw_path(canvas *c, const tobi_picture_path *path)
+{
+    segments parts = { .count = 0 };
+    bool enough = true;
+    for (int64_t k = 1; enough && k < path->count; k++)
+        enough = view_add_segment(&parts, view_point(&c->camera, path->points[k - 1]),
+                                  view_point(&c->camera, path->points[k]));
+    enough = enough && view_draw_segments(c, &parts, 2.2f, linear_color(path->color), 0.9f);
+    free(parts.end);
+    return enough;
+}
+
+static tobi_status draw_lines(scene *s, tobi_error *err)
 {
     const tobi_picture *f = s->f;
     const vec dark = { 0.01f, 0.01f, 0.02f };
-    for (int64_t k = 0; k < s->outline.count; k++)
-        view_draw_line(&s->c, s->outline.end[k][0], s->outline.end[k][1], 1, dark, 0.5f, false);
-    for (int64_t k = 0; k < s->isolines.count; k++)
-        view_draw_line(&s->c, s->isolines.end[k][0], s->isolines.end[k][1], 1.2f, dark, 0.8f, false);
-    for (int n = 0; n < f->path_count; n++) {
-        const tobi_picture_path *path = &f->paths[n];
-        const vec color = linear_color(path->color);
-        for (int64_t k = 1; k < path->count; k++)
-            view_draw_line(&s->c, view_point(&s->c.camera, path->points[k - 1]),
-                           view_point(&s->c.camera, path->points[k]), 2.2f, color, 0.9f, false);
-    }
+    bool enough = view_draw_segments(&s->c, &s->outline, 1, dark, 0.5f) &&
+                  view_draw_segments(&s->c, &s->isolines, 1.2f, dark, 0.8f);
+    for (int n = 0; enough && n < f->path_count; n++) enough = draw_path(&s->c, &f->paths[n]);
+    return enough ? TOBI_OK : no_memory(f, err);
 }
 
 static tobi_status draw(scene *s, const char *path, tobi_error *err)
@@ -507,7 +512,7 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     end_stage(s, STAGE_WATER);
     if (c->front) view_draw_box(c, f, true);
     if (s->glass.faces > 0) TOBI_TRY(view_paint_glass(c, &s->glass, water, true, err));
-    draw_lines(s);
+    TOBI_TRY(draw_lines(s, err));
     if (f->streamlines > 0 && f->flow && !view_draw_streamlines(c, f)) return no_memory(f, err);
     if (f->velocities && !view_draw_arrows(c, f)) return no_memory(f, err);
     if (f->axes) view_draw_axes(c, f);

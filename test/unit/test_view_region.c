@@ -216,6 +216,24 @@ static void test_isolines_of_groups(void **state)
         }
 }
 
+/* An isoline is as dark at the ends of its parts as between them. */
+static void test_even_lines(void **state)
+{
+    (void)state;
+    static uint8_t bare[FLAT_SIDE][FLAT_SIDE][3], lines[FLAT_SIDE][FLAT_SIDE][3];
+    int least = 1000, most = 0;
+    draw_parts(TOBI_LOOK_PARTICLES, 0, 0, 0, bare);
+    draw_parts(TOBI_LOOK_PARTICLES, 0, 1, 0, lines);
+    for (int y = FLAT_SIDE*7/10; y < FLAT_SIDE*9/10; y++) {
+        int ink = 0;      /* across the line, which is upright, in the middle of two colours */
+        for (int x = 0; x < FLAT_SIDE; x++)
+            for (int c = 0; c < 3; c++) ink += bare[y][x][c] > 128 ? bare[y][x][c] - lines[y][x][c] : 0;
+        least = ink < least ? ink : least;
+        most = ink > most ? ink : most;
+    }
+    if (least < 100 || most > 1.1*least) fail_msg("%d to %d", least, most);
+}
+
 /* Numbers of the colour bar and its label end before the picture does. */
 static void test_color_bar(void **state)
 {
@@ -246,7 +264,8 @@ int main(void)
     char folder[] = "/tmp/tobiuo_region_XXXXXX", command[100];
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_regions), cmocka_unit_test(test_flat_pictures),
                                         cmocka_unit_test(test_color_bar),
-                                        cmocka_unit_test(test_isolines_of_groups) };
+                                        cmocka_unit_test(test_isolines_of_groups),
+                                        cmocka_unit_test(test_even_lines) };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     if (chdir("/") == 0) snprintf(command, sizeof command, "rm -r %s", folder);
