@@ -93,6 +93,18 @@ static void find_distances(const void *view, int64_t begin, int64_t end)
     }
 }
 
+/* What a pair at that distance adds to the trace of the moments, by the dimension. */
+static double trace_of_pair(const tobi_smoothing_constants *c, const int32_t fixed[3], const double to_fixed[3])
+{
+    double square = 0;
+    for (int a = 0; a < c->dimension; a++) {
+        const double d = fixed[a]/to_fixed[a];
+        square += d*d;
+    }
+    return c->volume*c->slope_correction*tobi_smoothing_f(c->shape, c->dimension, c->h, sqrt(square))*square/
+           c->dimension;
+}
+
 static void cut_pairs(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
@@ -107,6 +119,9 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
         for (int g = 0; g < 8*c->list_groups[i]; g++) {
             int32_t j = list[g];
             if (j == i || !may_separate(s, i, j) || !separated(s, i, j)) continue;
+            int32_t fixed[3];
+            subtract(s, i, j, fixed);
+            n->entry[k].hidden += trace_of_pair(&s->smoothing, fixed, s->box.to_fixed);
             list[g] = (int32_t)i;
             cut++;
         }

@@ -3,6 +3,7 @@
    edges and tips from faces. Drawback: room for all planes of a corner for every particle beside a body that
    is not convex. */
 #include "sph/isph_bodies.h"
+#include "sph/isph_body_sides.h"
 #include "sph/isph_corners.h"
 #include "sph/state.h"
 #include "geom/vec3.h"
@@ -67,6 +68,7 @@ static void make_mirrors(const void *view, int64_t begin, int64_t end)
     const tobi_boundary_links *n = &sph_of(all->s)->links;
     isph_mirror *m = all->m->mirror, more[ISPH_CORNER_FACES];
     for (int64_t k = begin; k < end; k++) {
+        isph_body_sides_add(all->s, &n->link[k], &n->entry[k].share, &n->entry[k].height);
         m[k] = make_mirror(all->s, &n->link[k], &n->entry[k]);
         if (!all->m->corners) continue;
         const int found = isph_corner_find(all->s, &n->link[k], &n->entry[k], &m[k], more);
@@ -79,6 +81,12 @@ static void make_mirrors(const void *view, int64_t begin, int64_t end)
     }
 }
 
+/* Of the trace of (2): by the theorem of Gauss the kernel's share and a share of the heights. */
+static float share_of_trace(const tobi_system *s, const tobi_boundary_entry *e)
+{
+    return (float)fmin(e->share + e->height/s->smoothing.dimension, 0.98);
+}
+
 /* The links of a particle are handled together, where the last of them stands. */
 static void add_shares(const void *view, int64_t begin, int64_t end)
 {
@@ -88,7 +96,8 @@ static void add_shares(const void *view, int64_t begin, int64_t end)
     for (int64_t k = begin; k < end; k++) {
         const int64_t i = n->link[k].particle;
         for (int64_t q = v->last_link[i] == k ? k : -1; q >= 0; q = n->link[q].previous)
-            v->body_share[i] = 1 - (1 - v->body_share[i])*(1 - (float)n->entry[q].share);
+            v->body_share[i] = 1 - (1 - v->body_share[i])*(1 - share_of_trace(all->s, &n->entry[q]));
+        if (v->last_link[i] == k) v->body_share[i] += (float)n->entry[k].hidden;
     }
 }
 

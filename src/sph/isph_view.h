@@ -87,7 +87,7 @@ typedef struct isph_view {
     const sph_soft_link *soft;
     const tobi_float4 *soft_velocity;      /* m/s, of each point before the step                    */
     const double (*soft_change)[3];  /* m/s, of each point in this step                             */
-    float *body_share;               /* 1: share of the kernel in and behind bodies                 */
+    float *body_share;               /* 1: share of the trace of (2) in and behind bodies           */
     /* the method's own: geometry, eq. (2) to (5) */
     isph_tensor *inverse;            /* 1: B, of the gradient of the velocity                       */
     float *trace;                    /* 1: tr M                                                     */
