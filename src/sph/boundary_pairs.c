@@ -94,7 +94,8 @@ static void find_distances(const void *view, int64_t begin, int64_t end)
 }
 
 /* What a pair at that distance adds to the trace of the moments, by the dimension. */
-static double trace_of_pair(const tobi_smoothing_constants *c, const int32_t fixed[3], const double to_fixed[3])
+static double trace_of_pair(const tobi_smoothing_constants *c, const int32_t fixed[3],
+                            const double to_fixed[3])
 {
     double square = 0;
     for (int a = 0; a < c->dimension; a++) {

@@ -1,7 +1,7 @@
 /* How much of the half space behind a particle's plane is body, where a side of the domain cuts the body. Its
-   points end at the side, though water and body both go on behind it as mirrors. Without their images a post on
-   a floor has open corners (decision 88 in docs/decisions). Drawback: a second walk over the points near a
-   particle, beside sides only; it does not ask what hides them. */
+   points end at the side, though water and body both go on behind it as mirrors. Without their images a post
+   on a floor has open corners (decision 88 in docs/decisions). Drawback: a second walk over the points near
+   a particle, beside sides only; it does not ask what hides them. */
 #include "sph/isph_body_sides.h"
 #include "sph/state.h"
 #include "geom/vec3.h"

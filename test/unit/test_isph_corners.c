@@ -1,5 +1,5 @@
-/* Water of isph in a tank that is one body: its corners are closed, as those between sides of the domain. Around
-   a box on the floor: its edges and vertices are no free surface. */
+/* Water of isph in a tank that is one body: its corners are closed, as those between sides of the domain.
+   Around a box on the floor: its edges and vertices are no free surface. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
