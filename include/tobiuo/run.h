@@ -118,7 +118,8 @@ TOBI_API void tobi_run_free(tobi_run *run);
 /* The tables of a run; probes.csv has columns by the kinds of its sensors. */
 typedef enum tobi_table {
     TOBI_TABLE_HISTORY, TOBI_TABLE_BODIES, TOBI_TABLE_POINT, TOBI_TABLE_LEVEL, TOBI_TABLE_PATCH,
-    TOBI_TABLE_RUN_UP, TOBI_TABLE_FLOW, TOBI_TABLE_VOLUME      /* in the order of tobi_probe_kind */
+    TOBI_TABLE_RUN_UP, TOBI_TABLE_FLOW, TOBI_TABLE_VOLUME,     /* in the order of tobi_probe_kind */
+    TOBI_TABLE_SOLIDS
 } tobi_table;
 typedef struct tobi_column {
     const char *name, *unit;        /* "1": without a unit                                      */

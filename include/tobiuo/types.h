@@ -557,6 +557,8 @@ typedef struct tobi_solid_info {
     int64_t particles;
     double density, volume, mass; /* kg/m3, m3, kg of the regions at the start; 2-D: m2, kg/m         */
     double time_step;             /* s, the longest that it and gravity allow at rest                 */
+    double centre[3], velocity[3];       /* m, m/s: of its mass, once the world has started           */
+    double liquid_force[3];       /* N: of the fluids on it, in the last step                         */
 } tobi_solid_info;
 
 /* A connected piece of a solid. Particles are linked within 1.5 spacings unless a cut lies between them. */

@@ -1,5 +1,5 @@
-/* The columns of history.csv, bodies.csv and probes.csv: name, unit, value, meaning. One line makes the
-   header, the row, `tobiuo describe history` and docs/tables.md, so that they cannot disagree.
+/* The columns of history.csv, bodies.csv, solids.csv and probes.csv: name, unit, value, meaning. One line
+   makes the header, the row, `tobiuo describe history` and docs/tables.md, so that they cannot disagree.
    Drawback: values are expressions, which mean something only in record/tables.c. */
 #pragma once
 
@@ -113,6 +113,15 @@
     V3(B, "edge_force", "N", b.edge_force, \
        "The part of pressure_force that the edge of a blade takes to cut, in the last step.") \
     V3(B, "mean_edge_force", "N", m.impulse[6], "Mean of edge_force over that time.")
+
+/* S(name, unit, value, meaning): solids.csv after time and name, likewise. */
+#define SOLID(S) \
+    V3(S, "position", "m", i.centre, "Centre of mass.") \
+    V3(S, "velocity", "m/s", i.velocity, "Of the centre of mass.") \
+    V3(S, "liquid_force", "N", i.liquid_force, \
+       "Of the fluids on the solid, pressure and friction, in the last step; positive pushes towards +.") \
+    V3(S, "mean_liquid_force", "N", m, \
+       "Mean of liquid_force over the time since the last output: the one to plot.")
 
 /* P(name, unit, meaning): what a point and a level measure. */
 #define POINT(P) \

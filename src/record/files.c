@@ -22,7 +22,7 @@
 /* Folder, pattern. A file in work has ".part" behind its name. */
 static const struct { const char *folder, *pattern; } ours[] = {
     { "", "resolved.json" }, { "", "summary.json" }, { "", "history.csv" }, { "", "bodies.csv" },
-    { "", "probes.csv" }, { "", "lines.csv" }, { "", "joints.csv" },
+    { "", "solids.csv" }, { "", "probes.csv" }, { "", "lines.csv" }, { "", "joints.csv" },
     { "", "*.pvd" },
     { "fluid", "fluid_" SIX "*.vtu" }, { "bodies", "bodies_" SIX "*.vtu" },
     { "grid", "grid_" SIX "*.vtu" }, { "surface", "surface_" SIX "*.vtp" },

@@ -31,6 +31,7 @@ typedef struct tobi_tally {
    viscous torque, each times time, N s and N m s. */
 enum { TOBI_BODY_FORCES = 7 };
 typedef struct tobi_body_tally { double time, impulse[TOBI_BODY_FORCES][3]; } tobi_body_tally;
+typedef struct tobi_solid_tally { double time, impulse[3]; } tobi_solid_tally;    /* of liquids */
 
 /* One field to write. */
 typedef struct tobi_record_field {
@@ -71,8 +72,8 @@ typedef struct tobi_snapshot {
     struct tobi_tractions *tractions;     /* of each body; NULL: not asked           */
     struct tobi_drawing *drawing[1 + TOBI_VIEW_LIMIT];      /* of each view; NULL: no picture */
     struct tobi_record_surface *skin;     /* NULL: no surface                        */
-    tobi_csv_rows bodies, history;
-    bool bodies_written;                  /* so that a second try adds no row twice  */
+    tobi_csv_rows bodies, solids, history;
+    int tables_written;                   /* of bodies and solids, so that a second try adds no row twice */
 } tobi_snapshot;
 
 /* A column of probes.csv: its low pass, and the extremes of what was written. */
@@ -120,10 +121,11 @@ struct tobi_run {
     int series;
     int64_t listed, missing;              /* outputs in the lists; files that should be there */
 
-    tobi_csv *history, *bodies, *probes, *lines, *joints;        /* NULL where the scene has none */
+    tobi_csv *history, *bodies, *solids, *probes, *lines, *joints;   /* NULL where the scene has none */
     int64_t outputs;                      /* taken so far = number of the next       */
     tobi_tally since, total;              /* since the last output; of the run       */
     tobi_body_tally *body_since;          /* one per body                            */
+    tobi_solid_tally *solid_since;        /* one per solid                           */
     tobi_sensor_state *sensor;            /* one per column of probes.csv; NULL = none */
     double wall, step_wall;               /* s, earlier sessions + this one          */
     double begun;                         /* s, monotonic clock at the start         */
@@ -182,7 +184,7 @@ tobi_status tobi_joints_write(tobi_run *run, double before, tobi_error *err);
 /* A table of the run: new, or continued after the rows up to the world's time. */
 tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued,
                             const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err);
-enum { TOBI_TABLES = 5 };
+enum { TOBI_TABLES = 6 };
 /* All tables, NULL where there is none. */
 void tobi_tables_list(const tobi_run *run, tobi_csv *tables[TOBI_TABLES]);
 /* Tries to write rows that wait; how many do. */
@@ -190,6 +192,7 @@ tobi_status tobi_tables_flush(tobi_run *run, tobi_error *err);
 int64_t tobi_tables_waiting(const tobi_run *run);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
 void tobi_tally_bodies(tobi_run *run, double dt);
+void tobi_tally_solids(tobi_run *run, double dt);
 
 /* record_probes.c: probes.csv. */
 tobi_status tobi_probes_open(tobi_run *run, bool continued, tobi_error *err);

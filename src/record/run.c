@@ -43,11 +43,13 @@ static tobi_status open_run(tobi_world *world, const tobi_output_def *output, co
     if (run) {
         run->dir = strdup(dir);
         run->body_since = calloc((size_t)tobi_world_body_count(world) + 1, sizeof *run->body_since);
+        run->solid_since = calloc((size_t)tobi_world_solid_count(world) + 1, sizeof *run->solid_since);
     }
-    if (!run || !run->dir || !run->body_since) {
+    if (!run || !run->dir || !run->body_since || !run->solid_since) {
         if (run) {
             free(run->dir);
             free(run->body_since);
+            free(run->solid_since);
         }
         free(run);
         *out = NULL;
@@ -102,7 +104,8 @@ static tobi_status keep_scene(const tobi_run *run, tobi_error *err)
 static void tell_losses(tobi_run *run)
 {
     const struct { const tobi_csv *csv; const char *name; } tables[] = {
-        { run->history, "history.csv" }, { run->bodies, "bodies.csv" }, { run->probes, "probes.csv" },
+        { run->history, "history.csv" }, { run->bodies, "bodies.csv" },
+        { run->solids, "solids.csv" }, { run->probes, "probes.csv" },
         { run->lines, "lines.csv" }, { run->joints, "joints.csv" } };
     char *at = run->losses, *end = at + sizeof run->losses;
     *at = '\0';
@@ -246,6 +249,7 @@ static tobi_status step_towards(tobi_run *run, double target, double end, tobi_e
     run->particle_steps += (double)sim->info.fluid_particles;
     tobi_tally_add(&run->since, &sim->info);
     tobi_tally_bodies(run, sim->info.dt);
+    tobi_tally_solids(run, sim->info.dt);
     tobi_tally_add(&run->total, &sim->info);
     TOBI_TRY(tobi_lines_write(run, start, err));
     TOBI_TRY(tobi_joints_write(run, start, err));
@@ -281,6 +285,7 @@ tobi_status tobi_run_output(tobi_run *run, tobi_error *err)
     run->outputs++;
     run->since = (tobi_tally){ 0 };
     memset(run->body_since, 0, (size_t)tobi_world_body_count(run->world)*sizeof *run->body_since);
+    memset(run->solid_since, 0, (size_t)tobi_world_solid_count(run->world)*sizeof *run->solid_since);
     return TOBI_OK;
 }
 
@@ -335,6 +340,7 @@ void tobi_run_free(tobi_run *run)
     tobi_writer_free(run->writer);
     tobi_csv_close(run->history);
     tobi_csv_close(run->bodies);
+    tobi_csv_close(run->solids);
     tobi_csv_close(run->probes);
     tobi_csv_close(run->lines);
     tobi_csv_close(run->joints);
@@ -343,6 +349,7 @@ void tobi_run_free(tobi_run *run)
     tobi_snapshot_free_skins(run);
     tobi_trouble_free(run);
     free(run->body_since);
+    free(run->solid_since);
     free(run->sensor);
     free(run->resolved);
     free(run->dir);

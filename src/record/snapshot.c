@@ -159,6 +159,7 @@ void tobi_snapshot_free(tobi_snapshot *s)
     tobi_frames_free(s);
     free(s->tube);
     free(s->bodies.text);
+    free(s->solids.text);
     free(s->history.text);
     free(s);
 }

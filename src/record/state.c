@@ -76,6 +76,30 @@ static bool bodies_from_json(json_t *list, tobi_run *run)
     return true;
 }
 
+static json_t *solids_to_json(const tobi_run *run)
+{
+    json_t *list = json_array();
+    for (int k = 0; k < tobi_world_solid_count(run->world); k++) {
+        const tobi_solid_tally *t = &run->solid_since[k];
+        json_array_append_new(list, json_pack("[f, f, f, f]", t->time, t->impulse[0], t->impulse[1],
+                                              t->impulse[2]));
+    }
+    return list;
+}
+
+static bool solids_from_json(json_t *list, tobi_run *run)
+{
+    const int solids = list ? tobi_world_solid_count(run->world) : 0;        /* none in older ones */
+    if ((int)json_array_size(list) != solids) return false;
+    for (int k = 0; k < solids; k++) {
+        tobi_solid_tally *t = &run->solid_since[k];
+        if (json_unpack(json_array_get(list, (size_t)k), "[F, F, F, F]", &t->time, &t->impulse[0],
+                        &t->impulse[1], &t->impulse[2]) != 0)
+            return false;
+    }
+    return true;
+}
+
 static tobi_status write_json(const char *path, const json_t *json, tobi_error *err)
 {
     char *text = json ? json_dumps(json, JSON_INDENT(2)) : NULL;
@@ -126,12 +150,12 @@ tobi_status tobi_state_save(tobi_run *run, tobi_error *err)
 {
     int64_t step = tobi_world_info(run->world)->step;
     json_t *json =
-        json_pack("{s:I, s:f, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o}", "step", (json_int_t)step, "time",
+        json_pack("{s:I, s:f, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o}", "step", (json_int_t)step, "time",
                   tobi_world_time(run->world), "outputs", (json_int_t)run->outputs, "wall_s",
                   run->wall + tobi_record_clock() - run->begun, "step_wall_s", run->step_wall,
                   "particle_steps", run->particle_steps, "since_output", tally_to_json(&run->since),
-                  "total", tally_to_json(&run->total), "bodies_since_output", bodies_to_json(run), "sensors",
-                  tobi_probes_to_json(run));
+                  "total", tally_to_json(&run->total), "bodies_since_output", bodies_to_json(run),
+                  "solids_since_output", solids_to_json(run), "sensors", tobi_probes_to_json(run));
     char *companion = checkpoint_path(run, step, "json"), *state = checkpoint_path(run, step, "h5");
     tobi_status status = write_json(companion, json, err);
     if (status == TOBI_OK) status = sync_files(run, err);
@@ -155,16 +179,17 @@ static tobi_status read_companion(tobi_run *run, const char *path, tobi_error *e
     size_t size;
     tobi_plain_read(path, "checkpoint", COMPANION_LIMIT, &text, &size, NULL);
     json_t *json = text ? json_loadb(text, size, 0, NULL) : NULL;
-    json_t *since = NULL, *total = NULL, *bodies = NULL, *sensors = NULL;
+    json_t *since = NULL, *total = NULL, *bodies = NULL, *solids = NULL, *sensors = NULL;
     json_int_t outputs = 0;
     double time = NAN;
     bool good =
-        json_unpack(json, "{s:F, s:I, s:F, s:F, s:F, s:o, s:o, s:o, s?o}", "time", &time, "outputs", &outputs,
-                    "wall_s", &run->wall, "step_wall_s", &run->step_wall, "particle_steps",
+        json_unpack(json, "{s:F, s:I, s:F, s:F, s:F, s:o, s:o, s:o, s?o, s?o}", "time", &time, "outputs",
+                    &outputs, "wall_s", &run->wall, "step_wall_s", &run->step_wall, "particle_steps",
                     &run->particle_steps, "since_output", &since, "total", &total,
-                    "bodies_since_output", &bodies, "sensors", &sensors) == 0;
+                    "bodies_since_output", &bodies, "solids_since_output", &solids, "sensors", &sensors) == 0;
     good = good && tally_from_json(since, &run->since) && tally_from_json(total, &run->total) &&
-           bodies_from_json(bodies, run) && tobi_probes_from_json(sensors, run);
+           bodies_from_json(bodies, run) && solids_from_json(solids, run) &&
+           tobi_probes_from_json(sensors, run);
     run->outputs = outputs;
     json_decref(json);
     free(text);

@@ -1,6 +1,5 @@
-/* history.csv and bodies.csv (probes.csv: record_probes.c): the columns are lists (record/columns.h), so
-   that header, row and
-   what is said of them cannot disagree. */
+/* history.csv, bodies.csv and solids.csv (probes.csv: record/probes.c): the columns are lists
+   (record/columns.h), so that header, row and what is said of them cannot disagree. */
 #include "record/record.h"
 #include "record/columns.h"
 #include "world/world.h"
@@ -47,6 +46,16 @@ void tobi_tally_bodies(tobi_run *run, double dt)
     }
 }
 
+void tobi_tally_solids(tobi_run *run, double dt)
+{
+    for (int k = 0; run->solids && k < tobi_world_solid_count(run->world); k++) {
+        double force[3];
+        tobi_world_liquid_force(run->world, k, force);
+        run->solid_since[k].time += dt;
+        for (int a = 0; a < 3; a++) run->solid_since[k].impulse[a] += dt*force[a];
+    }
+}
+
 static tobi_body_tally mean_of_body(const tobi_body_tally *t)
 {
     tobi_body_tally m = *t;
@@ -76,6 +85,10 @@ static const tobi_csv_column history_columns[] = { HISTORY(H) };
 static const tobi_csv_column body_columns[] = { { "time", NULL }, { "name", NULL }, BODY(B) };
 #undef B
 
+#define S(name, unit, value, doc) { name, NULL },
+static const tobi_csv_column solid_columns[] = { { "time", NULL }, { "name", NULL }, SOLID(S) };
+#undef S
+
 #define H(name, unit, kind, value, doc) { name, unit, doc },
 static const tobi_column history[] = { HISTORY(H) };
 #undef H
@@ -83,6 +96,10 @@ static const tobi_column history[] = { HISTORY(H) };
 static const tobi_column body[] = {
     { "time", "s", "Simulated time." }, { "name", "text", "Name of the body." }, BODY(B) };
 #undef B
+#define S(name, unit, value, doc) { name, unit, doc },
+static const tobi_column solid[] = {
+    { "time", "s", "Simulated time." }, { "name", "text", "Name of the solid." }, SOLID(S) };
+#undef S
 #define P(name, unit, doc) { name, unit, doc },
 static const tobi_column point[] = { POINT(P) }, level[] = { LEVEL(P) }, patch[] = { PATCH(P) },
     run_up[] = { RUN_UP(P) }, flow[] = { FLOW(P) }, volume[] = { VOLUME(P) };
@@ -93,6 +110,7 @@ static const struct { const tobi_column *columns; int count; } tables[] = {
     [TOBI_TABLE_HISTORY] = LIST(history), [TOBI_TABLE_BODIES] = LIST(body),
     [TOBI_TABLE_POINT] = LIST(point), [TOBI_TABLE_LEVEL] = LIST(level), [TOBI_TABLE_PATCH] = LIST(patch),
     [TOBI_TABLE_RUN_UP] = LIST(run_up), [TOBI_TABLE_FLOW] = LIST(flow), [TOBI_TABLE_VOLUME] = LIST(volume),
+    [TOBI_TABLE_SOLIDS] = LIST(solid),
 #undef LIST
 };
 
@@ -108,6 +126,9 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
     if (tobi_world_body_count(run->world) > 0)
         TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, body_columns,
                             tables[TOBI_TABLE_BODIES].count, &run->bodies, err));
+    if (run->world->sim.soft.solids)
+        TOBI_TRY(tobi_table_open(run, "solids.csv", continued, solid_columns,
+                            tables[TOBI_TABLE_SOLIDS].count, &run->solids, err));
     TOBI_TRY(tobi_lines_open(run, continued, err));
     TOBI_TRY(tobi_joints_open(run, continued, err));
     return tobi_probes_open(run, continued, err);
@@ -129,6 +150,24 @@ static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *e
     return TOBI_OK;
 }
 
+static tobi_status take_solids(tobi_run *run, tobi_csv_rows *rows, tobi_error *err)
+{
+    for (int k = 0; run->solids && k < tobi_world_solid_count(run->world); k++) {
+        const tobi_solid_tally *t = &run->solid_since[k];
+        tobi_solid_info i;
+        double m[3];
+        TOBI_TRY(tobi_world_solid(run->world, k, &i));
+        for (int a = 0; a < 3; a++) m[a] = t->impulse[a]/(t->time > 0 ? t->time : 1);
+        tobi_csv_add_real(run->solids, tobi_world_time(run->world));
+        tobi_csv_add_text(run->solids, i.name);
+#define S(name, unit, value, doc) tobi_csv_add_real(run->solids, value);
+        SOLID(S)
+#undef S
+        TOBI_TRY(tobi_csv_take_row(run->solids, rows, err));
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
     const tobi_step_info *i = tobi_world_info(run->world);
@@ -136,6 +175,7 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
     const tobi_pieces none = { 0 }, *pieces = &none;
     if (tobi_world_solid_count(run->world) > 0) TOBI_TRY(tobi_world_pieces(run->world, &pieces, err));
     TOBI_TRY(take_bodies(run, &snapshot->bodies, err));
+    TOBI_TRY(take_solids(run, &snapshot->solids, err));
 #define H(name, unit, kind, value, doc) tobi_csv_add_##kind(run->history, value);
     HISTORY(H)
 #undef H
@@ -144,18 +184,21 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
 
 tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
-    tobi_status status = TOBI_OK;
-    if (run->bodies && !snapshot->bodies_written)
-        status = tobi_csv_write_rows(run->bodies, &snapshot->bodies, err);
-    TOBI_TRY(tobi_trouble_pass(run, TOBI_KIND_TABLES, snapshot->number, status, err));
-    snapshot->bodies_written = true;
-    status = tobi_csv_write_rows(run->history, &snapshot->history, err);
-    return tobi_trouble_pass(run, TOBI_KIND_TABLES, snapshot->number, status, err);
+    tobi_csv *const table[] = { run->bodies, run->solids, run->history };
+    tobi_csv_rows *const rows[] = { &snapshot->bodies, &snapshot->solids, &snapshot->history };
+    enum { ALL = sizeof table/sizeof *table };
+    for (int k = snapshot->tables_written; k < ALL; k++) {
+        const tobi_status status = table[k] ? tobi_csv_write_rows(table[k], rows[k], err) : TOBI_OK;
+        TOBI_TRY(tobi_trouble_pass(run, TOBI_KIND_TABLES, snapshot->number, status, err));
+        if (k + 1 < ALL) snapshot->tables_written = k + 1;
+    }
+    return TOBI_OK;
 }
 
 void tobi_tables_list(const tobi_run *run, tobi_csv *tables[TOBI_TABLES])
 {
-    tobi_csv *const all[TOBI_TABLES] = { run->history, run->bodies, run->probes, run->lines, run->joints };
+    tobi_csv *const all[TOBI_TABLES] = { run->history, run->bodies, run->solids, run->probes,
+                                          run->lines, run->joints };
     for (int k = 0; k < TOBI_TABLES; k++) tables[k] = all[k];
 }
 

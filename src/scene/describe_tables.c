@@ -28,7 +28,7 @@ static const char head[] =
     "| `BODY_tractions.pvd` | pressure and shear on it, in `tractions/`, with `output.tractions` |\n"
     "| `frames/` | a picture per output, with `--frames` |\n"
     "| `ply/`, `obj/` | positions of the fluid, surfaces of the bodies, with `output.ply`, `output.obj` |\n"
-    "| `history.csv`, `bodies.csv`, `probes.csv` | the tables below |\n"
+    "| `history.csv`, `bodies.csv`, `solids.csv`, `probes.csv` | the tables below |\n"
     "| `movie.mp4` | those pictures as a movie, after `tobiuo movie` |\n"
     "| `report.html` | one page: what to trust, pictures, plots, tables, times; after `tobiuo report` |\n"
     "| `plots/` | the tables as pictures, after `tobiuo plot` |\n"
@@ -39,13 +39,14 @@ static const char head[] =
     "\n"
     "## The tables\n"
     "\n"
-    "A run leaves up to three tables in its folder. They are CSV files: a row of names, then numbers\n"
+    "A run leaves its tables in its folder. They are CSV files: a row of names, then numbers\n"
     "with a decimal point and commas between.\n"
     "\n"
     "| file | a row for | in the folder |\n"
     "|---|---|---|\n"
     "| `history.csv` | each output | always |\n"
     "| `bodies.csv` | each output and body | where the scene has bodies |\n"
+    "| `solids.csv` | each output and solid | where the scene has solids beside fluids |\n"
     "| `lines.csv` | each step, or each `output.probe_interval`: `NAME_tension [N]`, "
     "`NAME_distance [m]` | where the scene has lines |\n"
     "| `joints.csv` | the same: `NAME_force_x [N]` ..., `NAME_moment_x [N m]` ..., "
@@ -55,6 +56,8 @@ static const char head[] =
     "- Units are SI. In 2-D masses, forces, torques and energies are per metre of depth.\n"
     "- Vectors are in axes of the domain. A force is positive towards the higher coordinate.\n"
     "- Forces and torques in `bodies.csv` act on the body, torques about its centre of mass.\n"
+    "- `solids.csv` has the force of the fluids on each solid. What holds the solid, `clamped_to`, is in\n"
+    "  `bodies.csv`: the force on a body is that of the fluids and that of the solids on it.\n"
     "- Columns `mean_...` are means over the time since the last output. Plot these. Other values are of\n"
     "  the last step, and scatter from step to step.\n"
     "- Energies and works of solids are of `mlsmpm`; of the other methods they are 0.\n"
@@ -63,6 +66,7 @@ static const char head[] =
 static const struct { const char *topic, *file, *doc; tobi_table table; } tables[] = {
     { "history", "history.csv", "The columns of history.csv: a row per output.", TOBI_TABLE_HISTORY },
     { "bodies", "bodies.csv", "The columns of bodies.csv: a row per output and body.", TOBI_TABLE_BODIES },
+    { "solids", "solids.csv", "The columns of solids.csv: a row per output and solid.", TOBI_TABLE_SOLIDS },
     { "probes", "probes.csv", "The columns of probes.csv for a probe of kind point: NAME_pressure, ...",
       TOBI_TABLE_POINT },
     { "probes", "probes.csv", "The columns of probes.csv for a probe of kind level: NAME_level.",
@@ -120,11 +124,12 @@ int tobi_tables_find(FILE *out, const char *name)
 
 const char *tobi_tables_topic(int index, const char **doc)
 {
-    static const char *const names[] = { "history", "bodies", "probes", "tables" };
+    static const char *const names[] = { "history", "bodies", "solids", "probes", "tables" };
     static const char *const docs[] = { "The columns of history.csv, with units.", "Those of bodies.csv.",
+                                        "Those of solids.csv.",
                                         "Those of probes.csv.",
                                         "The page of all columns, in Markdown (docs/tables.md)." };
-    if (index < 0 || index >= 4) return NULL;
+    if (index < 0 || index >= 5) return NULL;
     *doc = docs[index];
     return names[index];
 }
@@ -157,6 +162,8 @@ char *tobi_tables_manual(void)
     write_rows(out, TOBI_TABLE_HISTORY);
     fputs("\n## bodies.csv\n\n", out);
     write_rows(out, TOBI_TABLE_BODIES);
+    fputs("\n## solids.csv\n\n", out);
+    write_rows(out, TOBI_TABLE_SOLIDS);
     fputs("\n## probes.csv\n\nThe header names each column with its unit, `P_pressure [Pa]`. The first is\n"
           "`time [s]`. Where a sensor with a rate of its own is not due, its cells are empty.\n"
           "`summary.json` has the extremes of each column (`sensors`).\n", out);

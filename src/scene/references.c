@@ -23,7 +23,7 @@ static void check_column(tobi_source *source, const tobi_place *entry, tobi_tabl
         [TOBI_TABLE_BODIES] = "bodies.csv", [TOBI_TABLE_POINT] = "a point of probes.csv",
         [TOBI_TABLE_LEVEL] = "a level of probes.csv", [TOBI_TABLE_PATCH] = "a patch of probes.csv",
         [TOBI_TABLE_RUN_UP] = "a run-up of probes.csv", [TOBI_TABLE_FLOW] = "a flow of probes.csv",
-        [TOBI_TABLE_VOLUME] = "a volume of probes.csv" };
+        [TOBI_TABLE_VOLUME] = "a volume of probes.csv", [TOBI_TABLE_SOLIDS] = "solids.csv" };
     enum { COLUMNS = 64 };
     const char *names[COLUMNS];
     char near[200];

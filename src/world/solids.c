@@ -1,9 +1,11 @@
 /* What a world tells about its solids. */
 #include "base/error.h"
 #include "base/param.h"
+#include "exec/exec.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 int tobi_world_solid_count(const tobi_world *w)
 {
@@ -42,10 +44,42 @@ tobi_status tobi_world_solid(const tobi_world *w, int solid, tobi_solid_info *in
     info->mass = 0;
     for (int64_t i = 0; i < s->particles.count; i++) {
         if (s->particles.fluid[i] != solid) continue;
+        const double mass = s->method->mass(s, i);
         info->particles++;
-        info->mass += s->method->mass(s, i);
+        info->mass += mass;
+        for (int a = 0; a < 3; a++) {
+            info->centre[a] += mass*(&s->particles.position[i].x)[a];
+            info->velocity[a] += mass*(double)(&s->particles.velocity[i].x)[a];
+        }
     }
+    for (int a = 0; a < 3 && info->mass > 0; a++) {
+        info->centre[a] = s->box.lower[a] + info->centre[a]/info->mass;
+        info->velocity[a] /= info->mass;
+    }
+    tobi_world_liquid_force(w, solid, info->liquid_force);
     return TOBI_OK;
+}
+
+typedef struct pushed { const tobi_system *solids; int solid; } pushed;
+
+static void add_pushes(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const pushed *v = view;
+    const tobi_float4 *push = v->solids->sim->soft.push;
+    for (int64_t i = begin; i < end; i++)
+        for (int a = 0; a < 3 && v->solids->particles.fluid[i] == v->solid; a++)
+            totals[a] += (double)(&push[i].x)[a];
+}
+
+void tobi_world_liquid_force(const tobi_world *w, int solid, double force[3])
+{
+    const tobi_soft *soft = &w->sim.soft;
+    const pushed view = { soft->solids, solid };
+    double t[TOBI_TOTALS] = { 0 };
+    if (soft->solids && soft->push && w->sim.step > 0)
+        tobi_launch((tobi_exec *)&w->sim.exec, TOBI_HOST(add_pushes, 3, 0), &view, 0,
+                    soft->solids->particles.count, t);
+    memcpy(force, t, 3*sizeof *force);
 }
 
 /* Of the first system, which sets the step of all. */

@@ -64,6 +64,8 @@ void tobi_world_free_system(tobi_system *s);
 tobi_system *tobi_world_solids(const tobi_world *w);
 /* m, of the particles of a system, also before the start. */
 double tobi_world_spacing(const tobi_world *w, const tobi_system *s);
+/* N: of the fluids on a solid in the last step; 0 without. */
+void tobi_world_liquid_force(const tobi_world *w, int solid, double force[3]);
 tobi_system *tobi_world_fluids(const tobi_world *w);
 /* The number of the body of this name, -1: there is none. */
 int tobi_world_find_body(const tobi_world *w, const char *name);

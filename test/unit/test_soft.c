@@ -84,6 +84,56 @@ static void what_one_loses_the_other_gains(void **state)
         }
 }
 
+/* The force that is told is what the solid gained: nothing else acts on it as a whole. */
+static void told_force(void **state)
+{
+    (void)state;
+    for (int k = 0; k < METHODS; k++) {
+        tobi_world *w = make_world(methods[k], 0, 1, 1500);
+        tobi_solid_info info;
+        double before[3], after[3];
+        OK(tobi_world_start(w, &err));
+        OK(tobi_world_solid(w, 0, &info));
+        for (int a = 0; a < 3; a++) assert_true(info.liquid_force[a] == 0);
+        assert_true(fabs(info.centre[0] - 0.085) < 1e-6 && fabs(info.centre[2] - 0.145) < 1e-6);
+        OK(tobi_world_advance(w, 0.04, NULL, &err));
+        measure(w, 1, before);
+        OK(tobi_world_step(w, 1, NULL, &err));
+        measure(w, 1, after);
+        OK(tobi_world_solid(w, 0, &info));
+        const double gained = after[2] - before[2], told = info.liquid_force[2]*w->sim.dt;
+        if (!(gained > 0) || fabs(told - gained) > 1e-3*gained)
+            fail_msg("%s: the solid gained %g kg m/s, told are %g", methods[k], gained, told);
+        assert_true(fabs(info.velocity[2]*info.mass - after[2]) < 1e-5*after[2]);
+        tobi_world_destroy(w);
+    }
+}
+
+/* isph follows the waves of a stiff solid, decision 84. */
+static void steps_beside_stiff_solids(void **state)
+{
+    (void)state;
+    for (int stiff = 0; stiff < 2; stiff++) {
+        tobi_world *w = make_world("isph", 0, 1, 1000);
+        tobi_solid_def solid = tobi_default_solid_def();
+        tobi_fill_def rod = tobi_default_fill_def();
+        solid.name = "rod";
+        solid.youngs_modulus = stiff ? 1.4e6 : 1e2;
+        solid.poissons_ratio = 0.4;
+        solid.density = 1000;
+        for (int a = 0; a < 3; a++) {
+            rod.box_min[a] = 0.3;
+            rod.box_max[a] = 0.36;
+        }
+        OK(tobi_world_add_solid(w, &solid, &rod, 1, &err));
+        OK(tobi_world_step(w, 1, NULL, &err));
+        const double most = 2*0.01/sqrt(1.4e6/(1 - 0.16)/1000);
+        if (stiff ? w->sim.dt > most*(1 + 1e-9) || w->sim.dt < 0.6*most : w->sim.dt < 1.5*most)
+            fail_msg("step %g s, the wave of the stiff solid allows %g", w->sim.dt, most);
+        tobi_world_destroy(w);
+    }
+}
+
 static void the_same_bits(void **state)
 {
     (void)state;
@@ -324,6 +374,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_one_loses_the_other_gains),
+        cmocka_unit_test(told_force),
+        cmocka_unit_test(steps_beside_stiff_solids),
         cmocka_unit_test(the_same_bits),
         cmocka_unit_test(momentum_with_a_body),
         cmocka_unit_test(bits_with_a_body),
