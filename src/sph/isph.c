@@ -21,6 +21,8 @@ enum { FAILURES = 50 };
 
 /* Spacings that a wave of the depth at the start may go in a step beside soft solids. */
 static const double SOFT_COURANT = 0.08;
+/* The same of a wave along a thin solid. */
+static const double STIFF_COURANT = 2;
 
 static const double FULL_SHIFT_STEP = 0.2, SHIFT_AT_REST = 0.1;
 
@@ -60,11 +62,13 @@ int isph_list_memory(tobi_system *s, double **values)
     return ISPH_MEMORY;
 }
 
-/* Solids answer a step late: they swing where long waves pass more of a spacing in a step. */
+/* Solids answer a step late: they swing where long waves pass more of a spacing in a step, and where they
+   themselves swing too much in one (decision 84). */
 static double choose_soft_dt(const tobi_system *s)
 {
     if (!s->sim->soft.solids) return INFINITY;
-    return SOFT_COURANT*s->smoothing.spacing/sqrt(fmax(s->start_head, 1e-24));
+    return s->smoothing.spacing*fmin(SOFT_COURANT/sqrt(fmax(s->start_head, 1e-24)),
+                                     STIFF_COURANT/fmax(sph_soft_wave_speed(s), 1e-12));
 }
 
 /* Particles and a body may go against each other: cfl bounds what both go. A thin tail drew a cavity into the

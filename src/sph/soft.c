@@ -498,6 +498,19 @@ double sph_soft_dt(const tobi_system *s)
     return dt;
 }
 
+double sph_soft_wave_speed(const tobi_system *s)
+{
+    const tobi_system *solids = solids_of(s)->solids;
+    double square = 0;
+    for (int k = 0; solids && k < solids->solid_count; k++) {
+        const tobi_solid_def *d = &solids->solids[k].def;
+        const double nu = d->poissons_ratio,
+                     modulus = d->model == TOBI_LIQUID ? d->bulk_modulus : d->youngs_modulus/(1 - nu*nu);
+        if (d->model != TOBI_STATIONARY) square = fmax(square, modulus/d->density);
+    }
+    return sqrt(square);
+}
+
 int64_t sph_soft_bytes(const sph_soft *q)
 {
     return q->link_room*(int64_t)sizeof *q->link + q->wet_room*(int64_t)sizeof *q->wet +

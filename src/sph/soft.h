@@ -49,5 +49,7 @@ void sph_soft_load(struct tobi_system *s);
 double sph_soft_compliance(const struct tobi_system *s);
 /* The longest step for the friction at points where liquid sticks, s; INFINITY without. */
 double sph_soft_dt(const struct tobi_system *s);
+/* m/s: of the fastest wave along a thin solid that moves; 0 without solids. */
+double sph_soft_wave_speed(const struct tobi_system *s);
 int64_t sph_soft_bytes(const sph_soft *q);
 void sph_soft_free(sph_soft *q);
