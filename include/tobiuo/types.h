@@ -356,7 +356,7 @@ typedef struct tobi_outlet_def {
     const char *name;
     double centre[3], normal[3], along[3];     /* as of inlets: normal is the way that the liquid goes */
     double width, height, radius;
-    double level;               /* m, of the liquid beyond; 0 = there is no pressure                 */
+    double level, pressure;     /* m, of the liquid beyond; or Pa, at the centre; 0 = there is none  */
 } tobi_outlet_def;
 
 /* A sensor in the domain. A point reports pressure and velocity of the fluid there, a level how high the

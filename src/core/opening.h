@@ -13,6 +13,10 @@ typedef struct tobi_inlet_column {
     double phase;                    /* steps that it is ahead of others                            */
 } tobi_inlet_column;
 
+/* What the pressure of an outlet is: none, or that of liquid at rest up to a level, or from one at the centre
+   of the patch on. */
+enum { TOBI_GIVES_NOTHING, TOBI_GIVES_LEVEL, TOBI_GIVES_PRESSURE };
+
 /* A row of a flow in time; linear between rows, constant before and after. */
 typedef struct tobi_flow_row {
     double time, speed;              /* s; m/s, mean over the patch                                 */
@@ -40,8 +44,8 @@ typedef struct tobi_opening {
     int64_t column_count;
     double way;                      /* m that the mean flow has gone; survives a restart           */
     /* outlets */
-    double level;                    /* m, along gravity, upwards                                   */
-    int has_level;                   /* 0: no pressure there                                        */
+    double level, pressure;          /* m, along gravity, upwards; Pa, at the centre                */
+    int gives;                       /* TOBI_GIVES_*                                                */
 } tobi_opening;
 
 /* Coordinates of a place: along normal, along, across, from the middle of the patch, m. */

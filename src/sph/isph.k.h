@@ -356,7 +356,7 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     if (v->second_order) v->source[i] += 0.5*v->density*v->invariant[i];
     v->excess[i] = excess;
     v->inverse_diagonal[i] = diagonal > 0 ? 1/diagonal : 0;
-    v->solution[i] = v->keep*v->pressure[i];
+    v->solution[i] = v->keep*v->pressure[i] + (1 - v->keep)*v->base;
     totals[0] += excess;
     totals[1] += v->source[i];
 }

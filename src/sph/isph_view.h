@@ -51,6 +51,7 @@ typedef struct isph_view {
     int second_order;                /* 1: the list is that of the middle of the step               */
     double volume_gain, shifting;    /* parameters                                                  */
     double keep;                     /* 1: share of the last pressure that a solve starts from       */
+    double base;                     /* Pa: what it takes in place of the rest                       */
     double mean, carry, gain;        /* Pa/m2, 1, 1: of a sweep, eisph.k.h                           */
     double source_mean;              /* Pa/m2                                                       */
     /* choices, docs/isph_choices.md; zero is the usual one but where 1 is told */

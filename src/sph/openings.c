@@ -1,6 +1,6 @@
 /* What lies in a buffer is no unknown of the pressure: it keeps the pressure that it is given before the
-   solve, and accelerations by pressure are none (docs/decisions/0061-openings.md). Drawback: the pressure at
-   an inlet is that of the step before. */
+   solve, and goes as the profile or the free liquid beside it does (docs/decisions/0061-openings.md, 0086).
+   Drawback: the pressure at an inlet is that of the step before. */
 #include "sph/openings.h"
 #include "sph/state.h"
 #include <math.h>
@@ -8,6 +8,8 @@
 /* The free liquid gives way to the pressure of an inlet: all of its own in the next step would be too much,
    and from step to step it would swing. */
 static const double CONTINUE = 0.5;
+/* Share of a held neighbour in the velocity of an outlet, over that of a free one. */
+static const double LATE = 0.1;
 
 int sph_has_openings(const tobi_system *s) { return s->sim->opening_count > 0; }
 
@@ -31,8 +33,8 @@ static void mark_range(const void *view, int64_t begin, int64_t end)
     }
 }
 
-/* What the neighbours of a held particle have: means over them. */
-typedef struct around { double weight, free, velocity[3], pressure; } around;
+/* What the neighbours of a held particle have: sums over them. */
+typedef struct around { double free, velocity[3], pressure, held, before[3]; } around;
 
 static around look_around(const tobi_system *s, int64_t i)
 {
@@ -51,25 +53,33 @@ static around look_around(const tobi_system *s, int64_t i)
             still += d*s->fluid[0].density*s->sim->def.gravity[a];
         }
         const double w = tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(r2));
-        sum.weight += w;
-        for (int a = 0; a < 3; a++) sum.velocity[a] += w*(&p->velocity[j[k]].x)[a];
-        if (f->held[j[k]].w != 0) continue;
+        if (f->held[j[k]].w != 0) {
+            sum.held += w;
+            for (int a = 0; a < 3; a++) sum.before[a] += w*(&f->held[j[k]].x)[a];
+            continue;
+        }
         sum.free += w;
+        for (int a = 0; a < 3; a++) sum.velocity[a] += w*(&p->velocity[j[k]].x)[a];
         sum.pressure += w*(f->pressure[j[k]] + still);
     }
     return sum;
 }
 
-/* Of the level, Pa. */
+/* Of liquid at rest up to the level, or from the centre on, less what it takes to come in from there, Pa. */
 static double find_pressure(const tobi_system *s, const tobi_opening *o, int64_t i)
 {
-    double g = 0, along = 0;
-    if (!o->has_level) return 0;
+    const double density = s->fluid[0].density, *gravity = s->sim->def.gravity;
+    double size = 0, along = 0, in = 0;
+    if (!o->gives) return 0;
     for (int a = 0; a < s->box.dimension; a++) {
-        g += s->sim->def.gravity[a]*s->sim->def.gravity[a];
-        along += s->sim->def.gravity[a]*((&s->particles.position[i].x)[a] + s->box.lower[a]);
+        const double x = (&s->particles.position[i].x)[a];
+        size += gravity[a]*gravity[a];
+        along += gravity[a]*(o->gives == TOBI_GIVES_LEVEL ? x + s->box.lower[a] : x - o->centre[a]);
+        in -= (&s->particles.velocity[i].x)[a]*o->normal[a];
     }
-    return fmax(s->fluid[0].density*(sqrt(g)*o->level + along), 0);
+    in = fmax(in, 0);
+    const double top = o->gives == TOBI_GIVES_LEVEL ? density*sqrt(size)*o->level : o->pressure;
+    return fmax(top + density*(along - 0.5*in*in), 0);
 }
 
 static const tobi_opening *opening_of(const tobi_system *s, int64_t i)
@@ -78,7 +88,7 @@ static const tobi_opening *opening_of(const tobi_system *s, int64_t i)
     return w != 0 ? &s->sim->openings[(int)fabsf(w) - 1] : NULL;
 }
 
-/* Velocities and pressures of outlets. */
+/* Pressures of outlets, and the velocities that their particles came with. */
 static void extend_range(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
@@ -86,14 +96,8 @@ static void extend_range(const void *view, int64_t begin, int64_t end)
     for (int64_t i = begin; i < end; i++) {
         const tobi_opening *o = opening_of(s, i);
         if (!o || !o->outlet) continue;
-        const around sum = look_around(s, i);
-        double out = 0, v[3];
-        f->pressure[i] = (float)find_pressure(s, o, i);
-        for (int a = 0; a < 3; a++) {
-            v[a] = sum.weight > 0 ? sum.velocity[a]/sum.weight : (&s->particles.velocity[i].x)[a];
-            out += v[a]*o->normal[a];
-        }
-        for (int a = 0; a < 3; a++) (&f->held[i].x)[a] = (float)(v[a] - fmin(out, 0)*o->normal[a]);
+        f->pressure[i] = s->cells.record[i].w = (float)find_pressure(s, o, i);
+        for (int a = 0; a < 3; a++) (&f->held[i].x)[a] = (&s->particles.velocity[i].x)[a];
     }
 }
 
@@ -118,27 +122,49 @@ void sph_openings_continue(tobi_system *s, double share)
     if (sph_has_openings(s)) tobi_loop(s->sim->exec.threads, s->particles.count, 512, continue_range, &c);
 }
 
+/* A velocity of an outlet's particle: the mean of the free ones around; where there are few, of those held,
+   as they were before the step, and `more`. */
+static void follow(const tobi_system *s, const tobi_opening *o, int64_t i, const double more[3])
+{
+    const around sum = look_around(s, i);
+    const double weight = sum.free + LATE*sum.held;
+    tobi_float4 *v = &s->particles.velocity[i];
+    double out = 0;
+    if (weight > 0)
+        for (int a = 0; a < s->box.dimension; a++)
+            (&v->x)[a] = (float)((sum.velocity[a] + LATE*(sum.before[a] + sum.held*more[a]))/weight);
+    for (int a = 0; a < 3; a++) out += (&v->x)[a]*o->normal[a];
+    if (o->gives) return;
+    for (int a = 0; a < 3 && out < 0; a++) (&v->x)[a] -= (float)(out*o->normal[a]);
+}
+
+/* In isph an outlet's particles are predicted as the free ones around them are. In the other methods they
+   keep their velocities: the operator gives them an acceleration by pressure along the normal alone, which
+   would not balance gravity across it. */
 static void hold_range(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     const tobi_float4 *held = sph_fields_of(&s->particles)->held;
-    for (int64_t i = begin; i < end; i++)
-        if (held[i].w != 0) s->particles.velocity[i] = (tobi_float4){ held[i].x, held[i].y, held[i].z, 0 };
+    double pull[3];
+    for (int a = 0; a < 3; a++) pull[a] = s->dt*s->sim->def.gravity[a];
+    for (int64_t i = begin; i < end; i++) {
+        const tobi_opening *o = opening_of(s, i);
+        if (o && o->outlet && sph_of(s)->mirrors) follow(s, o, i, pull);
+        else if (o) s->particles.velocity[i] = (tobi_float4){ held[i].x, held[i].y, held[i].z, 0 };
+    }
 }
 
 static void drive_range(const void *view, int64_t begin, int64_t end)
 {
+    static const double none[3] = { 0 };
     const tobi_system *s = view;
     const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t i = begin; i < end; i++) {
         const tobi_opening *o = opening_of(s, i);
-        tobi_float4 *v = &s->particles.velocity[i];
-        double out = 0;
         if (!o) continue;
         f->accel[i] = (tobi_float4){ 0, 0, 0, 0 };
-        if (!o->outlet) *v = (tobi_float4){ f->held[i].x, f->held[i].y, f->held[i].z, 0 };
-        for (int a = 0; a < 3; a++) out += (&v->x)[a]*o->normal[a];
-        for (int a = 0; a < 3 && out < 0; a++) (&v->x)[a] -= (float)(out*o->normal[a]);
+        if (o->outlet) follow(s, o, i, none);
+        else s->particles.velocity[i] = (tobi_float4){ f->held[i].x, f->held[i].y, f->held[i].z, 0 };
     }
 }
 
@@ -146,6 +172,8 @@ void sph_openings_mark(tobi_system *s, sph_view *v)
 {
     const int64_t n = s->particles.count;
     if (!sph_has_openings(s)) return;
+    for (int k = 0; k < s->sim->opening_count; k++)
+        for (int a = 0; a < 3; a++) (&sph_of(s)->normal[k].x)[a] = (float)s->sim->openings[k].normal[a];
     tobi_loop(s->sim->exec.threads, n, 0, mark_range, s);
     tobi_loop(s->sim->exec.threads, n, 512, extend_range, s);
     sph_openings_continue(s, CONTINUE);
@@ -157,11 +185,11 @@ void sph_openings_mark(tobi_system *s, sph_view *v)
 void sph_openings_hold(tobi_system *s)
 {
     if (sph_has_openings(s) && sph_of(s)->marked)
-        tobi_loop(s->sim->exec.threads, s->particles.count, 0, hold_range, s);
+        tobi_loop(s->sim->exec.threads, s->particles.count, 512, hold_range, s);
 }
 
 void sph_openings_drive(tobi_system *s)
 {
     if (sph_has_openings(s) && sph_of(s)->marked)
-        tobi_loop(s->sim->exec.threads, s->particles.count, 0, drive_range, s);
+        tobi_loop(s->sim->exec.threads, s->particles.count, 512, drive_range, s);
 }

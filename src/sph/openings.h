@@ -8,12 +8,12 @@
 int sph_has_openings(const tobi_system *s);
 /* After a search: marks what lies in buffers, at the end of the step at hand, and gives it its velocity and
    pressure. Inlets: the profile; the pressure of the free liquid beside, as it continues at rest. Outlets:
-   the mean velocity of the liquid around, not inwards; the pressure of their level. The view sees the marks
-   until the next sort. */
+   the velocity that they have; the pressure of their level. The view sees the marks until the next sort. */
 void sph_openings_mark(tobi_system *s, sph_view *v);
 /* Pressures of inlets go on by `share` to those of the free liquid beside them; in the records too. */
 void sph_openings_continue(tobi_system *s, double share);
-/* After forces: gives what is marked its velocities again. */
+/* After forces: gives inlets their velocities again, outlets that of the free liquid around or their own. */
 void sph_openings_hold(tobi_system *s);
-/* After pressure, before positions: the same of inlets; outlets let nothing in. No shift of either. */
+/* After pressure, before positions: the same of inlets; outlets get the mean velocity of the free liquid
+   around, inwards only where their pressure is given. No shift of either. */
 void sph_openings_drive(tobi_system *s);

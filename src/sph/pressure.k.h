@@ -54,6 +54,7 @@ TOBI_FN void sph_pressure_accel_finish(const sph_view *v, int64_t i, sph_pressur
     const tobi_float4 none = {0, 0, 0, 0};
     (void)totals;
     v->accel[i] = sph_driven(v, i) ? none : sph_pressure_accel_value(v, i, a);
+    if (sph_held(v, i) && !sph_driven(v, i)) v->accel[i] = sph_take_normal(v, i, v->accel[i]);
 }
 
 /* v += dt a(p). totals[0]: sum of rho |a|. */

@@ -34,6 +34,7 @@ typedef struct sph_view {
     uint8_t *TOBI_RESTRICT surface;
     const uint8_t *TOBI_RESTRICT fluid;
     const tobi_float4 *TOBI_RESTRICT held;    /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none */
+    const tobi_float4 *outlet_normal;         /* of each opening, by |w| - 1 */
     /* neighbour list */
     const int32_t *TOBI_RESTRICT list;
     const uint32_t *TOBI_RESTRICT list_start;
@@ -85,9 +86,16 @@ typedef struct sph_view {
 } sph_view;
 
 /* Whether the pressure of a particle is given: it lies in the buffer of an opening; and its velocity: of an
-   inlet. */
+   inlet. An outlet leaves the part of x along its normal. */
 TOBI_FN int sph_held(const sph_view *v, int64_t i) { return v->held && v->held[i].w != 0; }
 TOBI_FN int sph_driven(const sph_view *v, int64_t i) { return v->held && v->held[i].w > 0; }
+TOBI_FN tobi_float4 sph_take_normal(const sph_view *v, int64_t i, tobi_float4 x)
+{
+    const tobi_float4 n = v->outlet_normal[(int)(-v->held[i].w) - 1];
+    const float along = x.x*n.x + x.y*n.y + x.z*n.z;
+    const tobi_float4 out = {along*n.x, along*n.y, along*n.z, 0};
+    return out;
+}
 
 /* Surface tension times curvature, Pa; 0 where no fluid has tension. */
 TOBI_FN float sph_capillary(const sph_view *v, int64_t i) { return v->capillary ? v->capillary[i] : 0; }

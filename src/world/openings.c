@@ -14,8 +14,6 @@
 /* Phases of columns are all n-ths, one after the other some golden ratio of n on, so that mass comes in
    evenly in time and neighbours are far from each other. */
 static const double GOLDEN = 0.6180339887498949;
-/* Support radii: how far an outlet's particles are kept, and where they may still be found. */
-static const double KEPT = 1;
 /* s: what a new particle's velocity is the mean of. */
 static const double SOON = 1e-6;
 /* Buffers: how far behind an inlet regions are cut out. */
@@ -149,10 +147,11 @@ static void place(const tobi_opening *o, double normal, double along, double acr
 }
 
 /* The patch and its buffer, corner by corner. */
-static tobi_status check_place(const tobi_opening *o, const tobi_box *box, double h, tobi_error *err)
+static tobi_status check_place(const tobi_opening *o, const tobi_box *box, const tobi_smoothing_constants *c,
+                               tobi_error *err)
 {
     const double u = o->radius > 0 ? o->radius : o->half[0], v = o->radius > 0 ? o->radius : o->half[1];
-    const double far = o->outlet ? KEPT*h : -o->depth;
+    const double far = o->outlet ? tobi_outlet_depth(o, c) : -o->depth;
     char text[200];
     for (int k = 0; k < 8; k++) {
         double x[3];
@@ -216,7 +215,7 @@ static tobi_status add(tobi_world *w, const tobi_opening *o, int limit, tobi_err
                          w->system[0].method->name);
     if (same >= limit) return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d %s", limit,
                                         o->outlet ? "outlets" : "inlets");
-    TOBI_TRY(check_place(o, &w->system[0].box, w->system[0].smoothing.h, err));
+    TOBI_TRY(check_place(o, &w->system[0].box, &w->system[0].smoothing, err));
     TOBI_TRY(check_bodies(w, o, err));
     tobi_opening *more = realloc(s->openings, (size_t)(s->opening_count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for an opening");
@@ -304,8 +303,12 @@ tobi_status tobi_world_add_outlet(tobi_world *w, const tobi_outlet_def *def, tob
     TOBI_NEED(def, "the definition");
     TOBI_TRY(tobi_param_check(&tobi_outlet_table, def, err));
     const tobi_box *box = &w->system[0].box;
-    tobi_opening o = { .outlet = 1, .level = def->level, .has_level = def->level != 0 };
+    tobi_opening o = { .outlet = 1, .level = def->level, .pressure = def->pressure };
+    o.gives = def->pressure > 0 ? TOBI_GIVES_PRESSURE
+            : def->level != 0 ? TOBI_GIVES_LEVEL : TOBI_GIVES_NOTHING;
     set_name(&o, def->name, def->centre, box);
+    if (def->pressure > 0 && def->level != 0)
+        return refuse(&o, "pressure", "has a level and a pressure; it may have one", err);
     TOBI_TRY(set_axes(&o, def->normal, def->along, box->dimension, err));
     TOBI_TRY(set_patch(&o, def->width, def->height, def->radius, box->dimension, err));
     return add(w, &o, TOBI_OUTLET_LIMIT, err);
@@ -317,6 +320,7 @@ void tobi_openings_free(tobi_world *w)
     free(w->sim.openings);
     free(w->leaving);
     free(w->leaving_block);
+    free(w->beyond);
 }
 
 double tobi_openings_peak(const tobi_simulation *s)
@@ -393,7 +397,7 @@ tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err)
             continue;
         }
         TOBI_TRY(make_columns(o, &s->smoothing, err));
-        TOBI_TRY(check_place(o, &s->box, s->smoothing.h, err));
+        TOBI_TRY(check_place(o, &s->box, &s->smoothing, err));
         TOBI_TRY(check_bodies(w, o, err));
         const int64_t layers = count_layers(o);
         for (int64_t c = 0; c < o->column_count; c++)
@@ -416,7 +420,7 @@ static int is_gone(const tobi_system *s, int64_t i)
         double at[3];
         if (!o->outlet) continue;
         tobi_opening_locate(o, x, at);
-        if (at[0] > KEPT*s->smoothing.h && tobi_opening_faces(o, at)) return 1;
+        if (at[0] > tobi_outlet_depth(o, &s->smoothing) && tobi_opening_faces(o, at)) return 1;
     }
     return 0;
 }
@@ -504,6 +508,7 @@ tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err)
     TOBI_TRY(remove_rows(w, err));
     for (int k = 0; k < w->sim.opening_count; k++)
         if (!w->sim.openings[k].outlet) TOBI_TRY(follow(w, &w->sim.openings[k], err));
+    TOBI_TRY(tobi_openings_give(w, err));
     const double mass = s->smoothing.volume*s->fluid[0].density;
     s->info.mass_in = mass*(double)s->info.particles_in;
     s->info.mass_out = mass*(double)s->info.particles_out;

@@ -11,6 +11,10 @@ tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err);
 int tobi_openings_cover(const tobi_simulation *s, const double x[3]);
 /* After a step: what has gone out is removed, what follows in the buffers is added. */
 tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err);
+/* backflow.c: fills the buffers of outlets whose pressure is given. */
+tobi_status tobi_openings_give(tobi_world *w, tobi_error *err);
+/* How far beyond its plane an outlet keeps particles, m. */
+double tobi_outlet_depth(const tobi_opening *o, const tobi_smoothing_constants *c);
 /* A note where they leave no free surface, to a method that needs one. After the fill. */
 tobi_status tobi_openings_note(tobi_world *w, tobi_error *err);
 /* The fastest inlet at its fastest place, m/s. */

@@ -50,7 +50,10 @@ static const tobi_param outlet_rows[] = {
     PATCH(tobi_outlet_def),
     { .key = "level", REAL, AT(tobi_outlet_def, level), PLACE, .unit = "m", .text = "none",
       .doc = "Level of liquid at rest beyond the outlet, whose pressure holds there: a coordinate upwards; "
-             "without one there is no pressure." },
+             "without one there is no pressure. Liquid comes back where it is higher than that inside." },
+    { .key = "pressure", REAL, AT(tobi_outlet_def, pressure), RANGE(0, 1e12), .unit = "Pa", .text = "none",
+      .doc = "Instead of a level: pressure at the centre, and that of liquid at rest above and below it. "
+             "Liquid comes back where it is higher than that inside." },
     { 0 }
 };
 

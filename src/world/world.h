@@ -11,6 +11,9 @@ typedef struct tobi_probe { tobi_probe_def def; char name[104]; int body; } tobi
 
 typedef struct tobi_drive tobi_drive;
 
+/* A particle near an outlet: coordinates along normal, along, across, m; its row and id. */
+typedef struct tobi_beyond { double at[3]; int64_t row, id; } tobi_beyond;
+
 enum { TOBI_ALIVE = 0x70b10 };
 
 struct tobi_world {
@@ -31,6 +34,8 @@ struct tobi_world {
     int32_t *leaving;              /* owned: rows that outlets take, of the step at hand           */
     int64_t *leaving_block;        /* owned: their number in each block of rows                    */
     int64_t leaving_room, leaving_blocks;
+    tobi_beyond *beyond;           /* owned: what lies beyond an outlet, backflow.c               */
+    int64_t beyond_room;
     char **notes;                  /* owned texts                                            */
     int note_count;
     int step_noted;                /* 1: a note tells of a fixed time step that will be cut       */

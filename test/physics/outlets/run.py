@@ -1,0 +1,106 @@
+#!/usr/bin/python3
+"""Outlets whose pressure is given: a pool at rest, a pool that falls to the level beyond, a pipe."""
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from harness import Case, fit_line, mean, read_series, read_table, read_vtu
+
+METHODS = ("isph", "eisph", "dfsph", "wcsph")
+case = Case("outlets", "Outlets with a level or a pressure", """
+A pool in 2-D, 0.8 m long and 0.2 m deep, ends at an outlet over its whole depth. With the level 0.2 m beyond it nothing may
+move: a sensor 40 mm before the outlet reads rho g (0.2 m - y), and the pool keeps its water. With the level 0.15 m the pool
+(1 Pa s) falls to it and swings about it. Both over the last half of the time.
+Oil (10 Pa s) comes into a full pipe, 0.2 m wide, as a parabola of 0.5 m/s mean, and goes out 0.8 m further on at 2 kPa:
+there the pressure along the pipe is 2 kPa, and it falls by 12 mu U/H^2 (Poiseuille) towards it. By a line through
+0.3 m < x < 0.7 m, over the last half second.""")
+
+RHO, G, LONG, DEEP, LOWER = 1000, 9.81, 0.8, 0.2, 0.15
+WIDE, U, MU, GIVEN = 0.2, 0.5, 10, 2000
+
+
+def run_pool(method, layers, level, viscosity, end):
+    """Deviations of the mean sensor pressure and of the mean level over the last half; the level in time."""
+    content = {"dimension": 2, "method": method, "domain": {"min": [0, 0], "max": [LONG + 0.2, 0.3]}, "spacing": DEEP/layers,
+               "end_time": end, "gravity": [0, -G],
+               "fluids": [{"name": "water", "viscosity": viscosity,
+                           "fill": [{"box": {"min": [0, 0], "max": [LONG + 0.2, DEEP]}}]}],
+               "outlets": [{"name": "out", "centre": [LONG, 0.15], "normal": [1, 0], "width": 0.3, "level": level}],
+               "probes": [{"name": "floor", "position": [LONG - 0.04, 0.02]}],
+               "output": {"interval": end/40, "probe_interval": 0.01, "fields": ["velocity"], "surfaces": False}}
+    label = f"pool_{method}_{layers}_{level}"
+    out = case.run(label, scene=case.write_scene(label, content), may_fail=True)
+    if out is None:
+        return None
+    probes = read_table(out/"probes.csv")
+    read = mean([p for t, p in zip(probes["time"], probes["floor_pressure"]) if t >= end/2])
+    times, levels = [], []
+    for time, path in read_series(out):
+        xs = read_vtu(path)["Points"][0::3]
+        times.append(time)
+        levels.append(sum(1 for x in xs if x < LONG)*(DEEP/layers)**2/LONG)
+    late = mean([h for t, h in zip(times, levels) if t >= end/2])
+    return read/(RHO*G*(level - 0.02)) - 1, late/level - 1, times, levels
+
+
+def rest(method, layers, end):
+    label = f"rest, {method}, {layers} layers"
+    found = run_pool(method, layers, DEEP, 0.001, end)
+    case.figure(f"{label}: runs to its end", int(found is not None), "1", found is not None)
+    if found is None:
+        return
+    case.figure(f"{label}: pressure of the sensor, deviation", found[0], "within 0.02", abs(found[0]) <= 0.02)
+    case.figure(f"{label}: water in the pool, deviation", found[1], "within 0.02", abs(found[1]) <= 0.02)
+
+
+def fall(method, layers, end):
+    label = f"lower level, {method}, {layers} layers"
+    found = run_pool(method, layers, LOWER, 1, end)
+    case.figure(f"{label}: runs to its end", int(found is not None), "1", found is not None)
+    if found is None:
+        return
+    case.figure(f"{label}: mean level, deviation", found[1], "within 0.05", abs(found[1]) <= 0.05)
+    curves.append((f"{method}, {layers} layers", found[2], found[3], False))
+
+
+def pipe(method, across):
+    label = f"pipe, {method}, {across} across"
+    content = {"dimension": 2, "method": method, "domain": {"min": [0, 0], "max": [1.1, WIDE], "walls": {"y": "no-slip"}},
+               "gravity": [0, 0], "spacing": WIDE/across, "end_time": 1,
+               "fluids": [{"name": "oil", "viscosity": MU,
+                           "fill": [{"box": {"min": [0.1, 0], "max": [1.1, WIDE]}, "velocity": [U, 0]}]}],
+               "inlets": [{"name": "in", "centre": [0.1, WIDE/2], "normal": [1, 0], "width": WIDE, "speed": U,
+                           "profile": "parabolic"}],
+               "outlets": [{"name": "out", "centre": [0.9, WIDE/2], "normal": [1, 0], "width": WIDE, "pressure": GIVEN}],
+               "output": {"interval": 0.1, "fields": ["velocity", "pressure"], "surfaces": False}}
+    if method == "wcsph":
+        content["wcsph"] = {"stiffness": 14000}
+    name = f"pipe_{method}_{across}"
+    out = case.run(name, scene=case.write_scene(name, content), may_fail=True)
+    case.figure(f"{label}: runs to its end", int(out is not None), "1", out is not None)
+    if out is None:
+        return
+    lines = []
+    for time, path in read_series(out):
+        if time < 0.49:
+            continue
+        data = read_vtu(path)
+        xs, ps = data["Points"][0::3], data["pressure"]
+        middle = [i for i, x in enumerate(xs) if 0.3 < x < 0.7]
+        lines.append(fit_line([xs[i] for i in middle], [ps[i] for i in middle]))
+    slope = -mean([a for a, _ in lines])/(12*MU*U/WIDE**2)
+    off = mean([a*0.9 + b for a, b in lines])/GIVEN - 1
+    case.figure(f"{label}: pressure at the outlet, deviation", off, "within 0.02", abs(off) <= 0.02)
+    case.figure(f"{label}: pressure gradient over Poiseuille's", slope, "0.9 to 1.1", 0.9 <= slope <= 1.1)
+
+
+curves = []
+for name in case.pick(("isph", "eisph"), METHODS):
+    for number in case.pick((10,), (20, 40)):
+        rest(name, number, case.pick(1, 4))
+        if not (case.smoke and name == "eisph"):
+            fall(name, number, case.pick(6, 8))
+    for number in case.pick((10,), (10, 20)):
+        pipe(name, number)
+case.plot("Mean depth of the pool, level 0.15 m beyond", "t, s", "m", curves)
+case.finish()
