@@ -414,8 +414,8 @@ typedef struct tobi_joint_def {
     int    kind;                /* tobi_joint_between; in 2-D both are the same                      */
     const char *body;           /* name of a free or controlled body                                 */
     const char *to_body;        /* name of another body, not a deforming one; NULL = the domain      */
-    double point[3];            /* m, where they are joined, as the bodies start                     */
-    double axis[3];             /* of a hinge, of any length; 0 in 2-D: along z                      */
+    double point[3], axis[3];   /* m, as the bodies start; of a hinge, 0 in 2-D: along z             */
+    double lower, upper, stiffness, rest, damping;   /* of a hinge: stops, spring, damper, in degrees */
 } tobi_joint_def;
 
 /* A joint after a step. */

@@ -1,6 +1,7 @@
 /* Joints between bodies: all of them in one dense factor, so that a chain is solved exactly, without sweeps.
    Closed at both ends of a step like RATTLE (H. C. Andersen, J. Comput. Phys. 52 (1983) 24), they keep the
-   energy. Drawback: rows that others determine (closed loops, locked axes) are found by a small pivot. */
+   energy. Stops are rows that come and go by the sign of their impulse. Drawback: rows that others determine
+   (closed loops, locked axes) are found by a small pivot. */
 #include "core/constraint.h"
 #include "base/error.h"
 #include "geom/vec3.h"
@@ -10,7 +11,9 @@
 
 #define DEPENDENT 1e-11          /* of a diagonal entry: a pivot below it is rounding                  */
 #define CLOSED 1e-13             /* of `reach`, or rad: gaps that are as good as none                  */
-enum { MOST_ROUNDS = 40 };
+#define AT_REST 1e-7             /* rad/s: slower, a body at a stop rests on it                        */
+#define NOTHING 1e-12            /* of the largest impulse: no pull of a stop                          */
+enum { MOST_ROUNDS = 40, MOST_CHANGES = 12 };
 
 /* --- from definitions ------------------------------------------------------------------------- */
 
@@ -21,7 +24,7 @@ static int moves(const tobi_body *bodies, int body)
 
 static int count_rows(const tobi_constraints *c, const tobi_constraint *j)
 {
-    return c->dimension == 2 ? 2 : j->kind == TOBI_BETWEEN_BALL ? 3 : 5;
+    return (c->dimension == 2 ? 2 : j->kind == TOBI_BETWEEN_BALL ? 3 : 5) + (j->lower < j->upper);
 }
 
 static int find_slot(tobi_constraints *c, const tobi_body *bodies, int body)
@@ -147,18 +150,20 @@ static void make_tangents(const double n[3], double out[2][3])
 }
 
 /* Along the axes of the domain the places do not part; about two axes across a hinge the bodies do not turn
-   against each other. */
+   against each other, at a stop not about its axis. */
 static void make_rows(const tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
                       tobi_constraint_row *row, int count)
 {
+    const int stop = j->lower < j->upper ? count - 1 : -1;
     double point[2][3], axis[2][3], across[2][3];
     for (int side = 0; side < 2; side++) find_end(j, side, bodies, 0, point[side], axis[side]);
     make_tangents(axis[0], across);
     for (int i = 0; i < count; i++) {
         const double along[3] = { i == 0, i == 1, i == 2 };
         tobi_constraint_row *r = &row[i];
+        r->stop = i == stop;
         r->turns = i >= c->dimension;
-        memcpy(r->axis, r->turns ? across[i - c->dimension] : along, sizeof r->axis);
+        memcpy(r->axis, r->stop ? axis[0] : r->turns ? across[i - c->dimension] : along, sizeof r->axis);
         memset(r->jacobian, 0, sizeof r->jacobian);
         for (int side = 0; side < 2; side++) {
             double arm[3], lever[3];
@@ -181,6 +186,11 @@ static void find_gap(const tobi_constraint *j, const tobi_body *bodies, tobi_con
     vec3_sub(apart, point[1], point[0]);
     vec3_cross(turned, axis[0], axis[1]);
     for (int i = 0; i < count; i++) row[i].gap = vec3_dot(row[i].axis, row[i].turns ? turned : apart);
+    tobi_constraint_row *last = &row[count - 1];
+    if (!last->stop) return;
+    const double angle = tobi_constraint_angle(j, bodies, 1);
+    last->gap = (last->active < 0 ? j->lower : j->upper) - angle;
+    if (!last->active) last->gap = last->released ? 0 : fmin(j->upper - angle, 0) + fmax(j->lower - angle, 0);
 }
 
 /* --- the equation ----------------------------------------------------------------------------- */
@@ -237,15 +247,26 @@ static void factorize(tobi_constraints *c)
             a[j] *= c->row[j].inverse;
             left -= a[j]*a[j];
         }
-        p->inverse = left > DEPENDENT*whole ? 1/sqrt(left) : 0;
+        p->inverse = left > DEPENDENT*whole && (!p->stop || p->active) ? 1/sqrt(left) : 0;
     }
+}
+
+/* A stop at rest holds; those that a body runs into or leaves are found when velocities or gaps show it. */
+static void set_stop(const tobi_constraint *j, const tobi_body *bodies, tobi_constraint_row *row)
+{
+    row->active = row->released = 0;
+    if (!row->stop) return;
+    const int stop = tobi_constraint_at_stop(j, tobi_constraint_angle(j, bodies, 0));
+    row->active = fabs(tobi_constraint_rate(j, bodies)) <= AT_REST ? stop : 0;
 }
 
 void tobi_constraints_factor(tobi_constraints *c, const tobi_body *bodies)
 {
     tobi_constraint_row *row = c->row;
-    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++)
+    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++) {
         make_rows(c, &c->at[k], bodies, row, count_rows(c, &c->at[k]));
+        set_stop(&c->at[k], bodies, &row[count_rows(c, &c->at[k]) - 1]);
+    }
     for (int i = 0; i < c->rows; i++)
         for (int side = 0; side < 2; side++) {
             tobi_constraint_row *r = &c->row[i];
@@ -293,6 +314,52 @@ void tobi_constraints_project(tobi_constraints *c, int moving)
     }
     solve(c, c->change);
     apply_change(c);
+}
+
+/* Whether the impulse of a stop pulls: then the stop lets go, and gives it back. */
+static int release(tobi_constraints *c, int i)
+{
+    tobi_constraint_row *r = &c->row[i];
+    double most = 0;
+    if (!r->stop || !r->active) return 0;
+    for (int k = 0; k < c->rows; k++) most = fmax(most, fabs(c->impulse[k]));
+    if (!(c->impulse[i]*r->active < -NOTHING*most)) return 0;
+    memset(c->change, 0, (size_t)c->rows*sizeof *c->change);
+    c->change[i] = -c->impulse[i];
+    apply_change(c);
+    r->active = 0;
+    r->released = 1;
+    return 1;
+}
+
+/* Whether a body at a stop runs into it: then the stop holds. */
+static int meet(tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
+                tobi_constraint_row *r)
+{
+    double rate = 0;                     /* of the gap: the angle falls as it grows */
+    if (!r->stop || r->active || r->released) return 0;
+    const int stop = tobi_constraint_at_stop(j, tobi_constraint_angle(j, bodies, 0));
+    for (int side = 0; side < 2; side++)
+        if (r->slot[side] >= 0) rate += dot6(r->jacobian[side], c->speed[r->slot[side]]);
+    if (!stop || !(rate*stop < 0)) return 0;
+    r->active = stop;
+    return 1;
+}
+
+void tobi_constraints_obey(tobi_constraints *c, const tobi_body *bodies)
+{
+    for (int i = 0; i < c->rows; i++) c->row[i].released = 0;
+    for (int n = 0, again = 1; again; n++) {
+        int row = 0;
+        again = 0;
+        tobi_constraints_project(c, 1);
+        for (int k = 0; k < c->count && n < MOST_CHANGES; k++) {
+            row += count_rows(c, &c->at[k]);
+            again |= release(c, row - 1);
+            again |= meet(c, &c->at[k], bodies, &c->row[row - 1]);
+        }
+        if (again) factorize(c);
+    }
 }
 
 void tobi_constraints_add_load(const tobi_constraints *c, int slot, double f[6])
@@ -351,6 +418,28 @@ static void drift(const tobi_constraints *c, tobi_body *bodies, double dt, int d
     }
 }
 
+/* Stops that the next pose is beyond. */
+static int hold_stops(tobi_constraints *c)
+{
+    int met = 0;
+    for (int i = 0; i < c->rows; i++) {
+        tobi_constraint_row *r = &c->row[i];
+        if (!r->stop || r->active || r->gap == 0) continue;
+        r->active = r->gap < 0 ? 1 : -1;
+        met = 1;
+    }
+    if (met) factorize(c);
+    return met;
+}
+
+static int release_stops(tobi_constraints *c)
+{
+    int any = 0;
+    for (int i = 0; i < c->rows; i++) any |= release(c, i);
+    if (any) factorize(c);
+    return any;
+}
+
 /* Newton's method with the matrix of the present pose: each round leaves a share of the gaps that is of the
    order of the angle turned in the step. It ends where rounding does. */
 static void close_gaps(tobi_constraints *c, tobi_body *bodies, double dt, int driven)
@@ -359,8 +448,13 @@ static void close_gaps(tobi_constraints *c, tobi_body *bodies, double dt, int dr
     for (int round = 0; round < MOST_ROUNDS; round++) {
         drift(c, bodies, dt, driven);
         const double now = find_gaps(c, bodies);
-        if (now <= 1e-2 || (now <= 1 && now > 0.5*before)) break;
-        before = now;
+        const int met = hold_stops(c);
+        if (!met && (now <= 1e-2 || (now <= 1 && now > 0.5*before))) {
+            if (!release_stops(c)) break;
+            before = INFINITY;
+            continue;
+        }
+        before = met ? INFINITY : now;
         for (int i = 0; i < c->rows; i++) c->change[i] = -c->row[i].gap/dt;
         solve(c, c->change);
         apply_change(c);
@@ -392,7 +486,7 @@ tobi_status tobi_constraints_close(tobi_constraints *c, tobi_body *bodies, doubl
 void tobi_constraints_drive(tobi_constraints *c, tobi_body *bodies, double dt)
 {
     forget_impulses(c);
-    tobi_constraints_project(c, 1);
+    tobi_constraints_obey(c, bodies);
     close_gaps(c, bodies, dt, 1);
     tobi_constraints_count(c);
 }
@@ -441,23 +535,29 @@ void tobi_constraints_count(tobi_constraints *c)
                             row->axis);
 }
 
+/* Of a ball joint, about any axis. */
+static double find_ball_angle(const tobi_constraint *j, const tobi_body *bodies)
+{
+    double q[4], back[4];
+    find_turn(j, bodies, q);
+    for (int a = 0; a < 4; a++) back[a] = a ? -j->start[a] : j->start[a];
+    tobi_quaternion_product(q, back, q);
+    return remainder(2*atan2(vec3_length(q + 1), q[0]), 2*acos(-1));
+}
+
 void tobi_constraints_report(tobi_constraints *c, const tobi_body *bodies, double dt)
 {
     const double degree = acos(-1)/180;
     for (int k = 0; k < c->count; k++) {
         tobi_constraint *j = &c->at[k];
-        double point[2][3], axis[2][3], q[4], back[4];
+        double point[2][3], axis[2][3];
         for (int side = 0; side < 2; side++) find_end(j, side, bodies, 0, point[side], axis[side]);
         for (int a = 0; a < 3; a++) {
             j->info.force[a] = dt > 0 ? j->impulse[a]/dt : 0;
             j->info.moment[a] = dt > 0 ? j->impulse[3 + a]/dt : 0;
         }
         j->info.gap = sqrt(vec3_distance2(point[0], point[1]));
-        find_turn(j, bodies, q);
-        for (int a = 0; a < 4; a++) back[a] = a ? -j->start[a] : j->start[a];
-        tobi_quaternion_product(q, back, q);
         const int hinge = c->dimension == 2 || j->kind == TOBI_BETWEEN_HINGE;
-        const double sine = hinge ? vec3_dot(q + 1, j->axis[1]) : vec3_length(q + 1);
-        j->info.angle = remainder(2*atan2(sine, q[0]), 2*acos(-1))/degree;
+        j->info.angle = (hinge ? tobi_constraint_angle(j, bodies, 0) : find_ball_angle(j, bodies))/degree;
     }
 }

@@ -4,12 +4,15 @@
 #pragma once
 #include "core/body.h"
 
-enum { TOBI_CONSTRAINT_ROWS = 5 };       /* of a hinge in 3-D */
+enum { TOBI_CONSTRAINT_ROWS = 6 };       /* of a hinge in 3-D with stops */
 
 /* A row: the change of one number by velocity and angular velocity of both bodies. */
 typedef struct tobi_constraint_row {
     double axis[3];                      /* of length 1                                                 */
     int turns;                           /* 1: about the axis, 0: along it                              */
+    int stop;                            /* 1: of the stops of a hinge                                  */
+    int active;                          /* of it: -1 at the lower stop, 1 at the upper, 0: no row now  */
+    int released;                        /* 1: it has let go in the round at hand                       */
     int slot[2];                         /* of the bodies, -1: none that moves by forces                */
     double jacobian[2][6], answer[2][6]; /* J and W J^T                                                 */
     double pace;                         /* m/s, rad/s: what the motion of the other side asks for      */
@@ -24,6 +27,10 @@ typedef struct tobi_constraint {
     int body[2];                         /* that is joined, and to which; -1: the domain                */
     double point[2][3], axis[2][3];      /* m, in rest axes about the bodies' centres; of the domain from
                                             its lower corner                                            */
+    double lower, upper;                 /* rad: stops; both 0 = none                                   */
+    double stiffness, rest, damping;     /* N m/rad, rad, N m s/rad, about the axis                     */
+    double torque[3], before[3], damped[3];      /* N m on the body: of the spring, now and a step before,
+                                            and of the damper                                           */
     double start[4];                     /* how the body is turned against the other at the start       */
     double next_point[3], next_axis[3];  /* at the end of the step, of a body that is prescribed        */
     double impulse[6];                   /* N s, N m s at the joint: on the body, in this step          */
@@ -54,6 +61,20 @@ int tobi_constraints_join(const tobi_constraints *c, int a, int b);
 /* Of a body, -1: no joint holds it, or no force moves it. */
 int tobi_constraints_slot(const tobi_constraints *c, int body);
 
+/* joint_angle.c: of the body against the other since the start, rad, -pi to pi; next: at the next pose. */
+double tobi_constraint_angle(const tobi_constraint *j, const tobi_body *bodies, int next);
+/* How fast it grows, rad/s. */
+double tobi_constraint_rate(const tobi_constraint *j, const tobi_body *bodies);
+/* -1, 1: at the lower or upper stop within rounding, in the present pose, or beyond it; else 0. */
+int tobi_constraint_at_stop(const tobi_constraint *j, double angle);
+/* Torques of springs and dampers at the present poses; those of the last call become `before`. */
+void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodies);
+/* Adds to the torque on a body: `now` of the springs, `before` of them a step ago, `damped` of dampers. */
+void tobi_constraints_add_springs(const tobi_constraints *c, int body, double now, double before,
+                                  double damped, double torque[3]);
+/* s: a third of a radian of the fastest swing that springs and dampers make; INFINITY: none. */
+double tobi_constraints_step_limit(const tobi_constraints *c, const tobi_body *bodies);
+
 /* W of the bodies as they are. */
 void tobi_constraints_take_inverse(tobi_constraints *c, const tobi_body *bodies);
 /* J at the present pose and the factor of J W J^T, for W in `inverse`. */
@@ -61,6 +82,8 @@ void tobi_constraints_factor(tobi_constraints *c, const tobi_body *bodies);
 /* Makes `speed` obey; impulses are added to `impulse`. moving: 0 for accelerations, that bodies with a motion
    do not have in this step. */
 void tobi_constraints_project(tobi_constraints *c, int moving);
+/* The same for velocities, with the stops that bodies run into; those that would pull are let go. */
+void tobi_constraints_obey(tobi_constraints *c, const tobi_body *bodies);
 /* Adds J^T impulse to f, N s and N m s about the centre of the body in a slot. */
 void tobi_constraints_add_load(const tobi_constraints *c, int slot, double f[6]);
 

@@ -113,6 +113,7 @@ double tobi_rigid_step_limit(const tobi_dynamics_state *d)
         if (g > 0) limit = fmin(limit, 0.25*sqrt(d->shapes[k].thickness/g));
         limit = fmin(limit, tobi_joint_step_limit(r));
     }
+    limit = fmin(limit, tobi_constraints_step_limit(d->world.constraints, d->bodies));
     return fmin(limit, tobi_lines_step_limit(d->world.lines, d->world.line_count, d->bodies));
 }
 
@@ -135,6 +136,7 @@ void tobi_rigid_free(tobi_dynamics_state *d)
 void tobi_rigid_update_lines(tobi_dynamics_state *d)
 {
     for (int k = 0; k < d->world.line_count; k++) tobi_line_update(&d->world.lines[k], d->bodies);
+    tobi_constraints_update_springs(d->world.constraints, d->bodies);
 }
 
 static tobi_status run_control(tobi_body *b, double t, double dt, double force[3], double torque[3],
@@ -180,13 +182,22 @@ static tobi_status run_control(tobi_body *b, double t, double dt, double force[3
     return TOBI_OK;
 }
 
+/* Of lines, and of springs and dampers of joints. */
+static void add_loads(const tobi_dynamics_state *d, int body, tobi_line_when when, tobi_line_load *load)
+{
+    const double now = when == TOBI_LINES_NOW ? 1 : when == TOBI_LINES_MEAN ? 0.5 : 0;
+    tobi_lines_add(d->world.lines, d->world.line_count, body, when, load);
+    tobi_constraints_add_springs(d->world.constraints, body, now, when == TOBI_LINES_MEAN ? 0.5 : 0,
+                                 when != TOBI_LINES_NOW, load->torque);
+}
+
 /* Of a body with a joint: along its one coordinate. */
 static void kick_joint(const tobi_dynamics_state *d, tobi_body *b, double dt, const double impulse[6])
 {
     const double none[6] = { 0 };
     double damped[6];
     tobi_line_load damping = { 0 };
-    tobi_lines_add(d->world.lines, d->world.line_count, (int)(b - d->bodies), TOBI_LINES_DAMPING, &damping);
+    add_loads(d, (int)(b - d->bodies), TOBI_LINES_DAMPING, &damping);
     memcpy(damped, damping.force, sizeof damping.force);
     memcpy(damped + 3, damping.torque, sizeof damping.torque);
     tobi_joint_kick(&b->rigid, dt, impulse, damped);
@@ -206,8 +217,8 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
     tobi_line_load now = { 0 }, mean = { 0 };
     double impulse[6];
     const int body = (int)(b - d->bodies);
-    tobi_lines_add(d->world.lines, d->world.line_count, body, TOBI_LINES_NOW, &now);
-    tobi_lines_add(d->world.lines, d->world.line_count, body, TOBI_LINES_MEAN, &mean);
+    add_loads(d, body, TOBI_LINES_NOW, &now);
+    add_loads(d, body, TOBI_LINES_MEAN, &mean);
     for (int a = 0; a < 3; a++) {
         impulse[a] = r->impulse[a] + r->constraint[a];
         impulse[3 + a] = r->twist[a] + r->constraint[3 + a];
@@ -488,7 +499,7 @@ static tobi_status begin_pull(tobi_dynamics_state *d, tobi_error *err)
         tobi_rigid *r = &d->bodies[k].rigid;
         tobi_line_load load = { 0 };
         if (r->kind == TOBI_PRESCRIBED) continue;
-        tobi_lines_add(d->world.lines, d->world.line_count, k, TOBI_LINES_NOW, &load);
+        add_loads(d, k, TOBI_LINES_NOW, &load);
         for (int a = 0; a < 3; a++) {
             r->pull[a] = d->world.gravity[a] + 1/r->mass*(r->force[a] + load.force[a]);
             r->pull_torque[a] = r->torque[a] + load.torque[a];

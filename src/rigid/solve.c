@@ -134,7 +134,7 @@ static void obey_joints(tobi_solver *s)
     tobi_constraints *c = s->joints;
     if (c->count == 0) return;
     for (int k = 0; k < c->slots; k++) memcpy(c->speed[k], s->bodies[1 + c->body[k]].speed, sizeof *c->speed);
-    tobi_constraints_project(c, 1);
+    tobi_constraints_obey(c, s->owners);
     for (int k = 0; k < c->slots; k++) memcpy(s->bodies[1 + c->body[k]].speed, c->speed[k], sizeof *c->speed);
 }
 
@@ -159,7 +159,7 @@ void tobi_solve_joints(tobi_body *bodies, tobi_constraints *c)
         memcpy(c->speed[k], r->velocity, sizeof r->velocity);
         memcpy(c->speed[k] + 3, r->angular_velocity, sizeof r->angular_velocity);
     }
-    tobi_constraints_project(c, 1);
+    tobi_constraints_obey(c, bodies);
     finish_joints(c, bodies);
     for (int k = 0; k < c->slots; k++) {
         tobi_rigid *r = &bodies[c->body[k]].rigid;
@@ -375,6 +375,7 @@ tobi_status tobi_solve(tobi_solver *s, tobi_body *bodies, int body_count, tobi_t
     TOBI_TRY(reserve(s, count, body_count, err));
     take_bodies(s, bodies, body_count);
     s->joints = joints;
+    s->owners = bodies;
     if (joints->count) begin_joints(joints, bodies);
     obey_joints(s);
     for (int64_t k = 0; k < count; k++) {

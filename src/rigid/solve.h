@@ -14,6 +14,7 @@ typedef struct tobi_solver {
     tobi_solve_body *bodies;
     int64_t row_capacity, body_capacity;
     tobi_constraints *joints;    /* the caller's, in this call */
+    const tobi_body *owners;     /* the same: the bodies       */
     int sweeps;                  /* of the last step */
 } tobi_solver;
 

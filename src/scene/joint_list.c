@@ -56,6 +56,21 @@ static void check_axis(const tobi_scene *scene, tobi_source *source, const tobi_
         tobi_source_mistake(source, entry, "must have an axis, or be of kind ball");
 }
 
+static void check_hinge(const tobi_scene *scene, tobi_source *source, const tobi_joint_def *joint,
+                        const tobi_place *entry)
+{
+    static const char *const keys[] = { "lower", "upper", "stiffness", "damping" };
+    const double values[] = { joint->lower, joint->upper, joint->stiffness, joint->damping };
+    for (int k = 0; k < 4; k++) {
+        tobi_place place = { entry, keys[k], 0 };
+        if (scene->world.dimension == 3 && joint->kind == TOBI_BETWEEN_BALL && values[k] != 0)
+            tobi_source_mistake(source, &place, "is of a hinge, a ball joint has none");
+    }
+    tobi_place rest = { entry, "rest", 0 };
+    if (joint->rest != 0 && !(joint->stiffness > 0))
+        tobi_source_mistake(source, &rest, "is of a spring, which needs a stiffness");
+}
+
 void tobi_joint_list_check(const tobi_scene *scene, tobi_source *source)
 {
     static const tobi_place root = { 0 };
@@ -72,6 +87,7 @@ void tobi_joint_list_check(const tobi_scene *scene, tobi_source *source)
                                     k);
         check_bodies(scene, source, joint, &entry);
         check_axis(scene, source, joint, &entry);
+        check_hinge(scene, source, joint, &entry);
     }
 }
 

@@ -5,6 +5,7 @@
 #include "core/constraint.h"
 #include "geom/vec3.h"
 #include "world/world.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,6 +35,25 @@ static tobi_status check_bodies(const tobi_world *w, const tobi_joint_def *def, 
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': body '%s' is prescribed; a joint "
                                           "holds a free or controlled one, and may go to a prescribed one",
                                           def->name, def->body), "body");
+    return TOBI_OK;
+}
+
+/* A ball joint has none of what acts about an axis. */
+static tobi_status take_hinge(const tobi_joint_def *def, int dimension, tobi_constraint *j, tobi_error *err)
+{
+    const double degree = acos(-1)/180;
+    const int acts = def->stiffness > 0 || def->damping > 0, stops = def->lower < 0 || def->upper > 0;
+    if (dimension == 3 && def->kind == TOBI_BETWEEN_BALL && (acts || stops))
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': a ball joint has no stops, spring "
+                                          "or damper; a hinge has", def->name), "kind");
+    if (def->rest != 0 && !(def->stiffness > 0))
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': rest is of a spring, which needs "
+                                          "a stiffness", def->name), "rest");
+    j->lower = def->lower*degree;
+    j->upper = def->upper*degree;
+    j->stiffness = def->stiffness;
+    j->rest = def->rest*degree;
+    j->damping = def->damping;
     return TOBI_OK;
 }
 
@@ -87,6 +107,7 @@ tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d joints", TOBI_JOINT_LIMIT);
     TOBI_TRY(check_bodies(w, def, &j, err));
     TOBI_TRY(tobi_at_key(err, check_axis(def, w->system[0].box.dimension, &j, axis, err), "axis"));
+    TOBI_TRY(take_hinge(def, w->system[0].box.dimension, &j, err));
     snprintf(j.name, sizeof j.name, "%s", def->name);
     for (int side = 0; side < 2; side++) localize(w, def->point, axis, side, &j);
     tobi_constraint *more = realloc(c->at, (size_t)(c->count + 1)*sizeof *more);

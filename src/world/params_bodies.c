@@ -200,6 +200,16 @@ static const tobi_param joint_rows[] = {
       .doc = "Where they are joined, as the bodies start." },
     { .key = "axis", VEC3, AT(tobi_joint_def, axis), DIRECTION, .unit = "1",
       .doc = "Direction of the axis of a hinge, as the bodies start; in 2-D it is along z." },
+    { .key = "lower", REAL, AT(tobi_joint_def, lower), RANGE(-179, 0), .unit = "degrees",
+      .doc = "Stop of a hinge, the least angle of the body against the other; both stops 0 mean none." },
+    { .key = "upper", REAL, AT(tobi_joint_def, upper), RANGE(0, 179), .unit = "degrees",
+      .doc = "The other stop, the greatest angle. Bodies do not bounce off stops." },
+    { .key = "stiffness", REAL, AT(tobi_joint_def, stiffness), RANGE(0, 1e12), .unit = "N m/rad",
+      .doc = "Of a spring in a hinge. Stiff springs shorten the time step." },
+    { .key = "rest", REAL, AT(tobi_joint_def, rest), RANGE(-180, 180), .unit = "degrees",
+      .doc = "Angle at which the spring is without moment; the bodies start at 0." },
+    { .key = "damping", REAL, AT(tobi_joint_def, damping), RANGE(0, 1e12), .unit = "N m s/rad",
+      .doc = "Of a damper in a hinge." },
     { 0 }
 };
 

@@ -1,0 +1,103 @@
+/* The angle of a joint between bodies, and what acts on it: springs and dampers as torques at an instant,
+   whose means over a step keep the energy like those of lines; stops. Drawback: stiff springs shorten the
+   time step. */
+#include "core/constraint.h"
+#include "geom/vec3.h"
+#include <math.h>
+#include <string.h>
+
+#define AT_STOP 1e-9                     /* rad */
+
+double tobi_constraint_angle(const tobi_constraint *j, const tobi_body *bodies, int next)
+{
+    double to[4] = { 1, 0, 0, 0 }, back[4], q[4];
+    const tobi_rigid *r = &bodies[j->body[0]].rigid;
+    if (j->body[1] >= 0) {
+        const tobi_rigid *other = &bodies[j->body[1]].rigid;
+        const int moves = next && other->kind != TOBI_PRESCRIBED;
+        memcpy(to, moves ? other->next_orientation : other->orientation, sizeof to);
+    }
+    for (int a = 1; a < 4; a++) to[a] = -to[a];
+    tobi_quaternion_product(to, next ? r->next_orientation : r->orientation, q);
+    for (int a = 0; a < 4; a++) back[a] = a ? -j->start[a] : j->start[a];
+    tobi_quaternion_product(q, back, q);
+    return remainder(2*atan2(vec3_dot(q + 1, j->axis[1]), q[0]), 2*acos(-1));
+}
+
+/* Of the hinge, as the body holds it. */
+static void find_axis(const tobi_constraint *j, const tobi_body *bodies, double axis[3])
+{
+    double m[3][3];
+    tobi_quaternion_matrix(bodies[j->body[0]].rigid.orientation, m);
+    for (int a = 0; a < 3; a++) axis[a] = vec3_dot(m[a], j->axis[0]);
+}
+
+double tobi_constraint_rate(const tobi_constraint *j, const tobi_body *bodies)
+{
+    double axis[3], rate;
+    find_axis(j, bodies, axis);
+    rate = vec3_dot(axis, bodies[j->body[0]].rigid.angular_velocity);
+    if (j->body[1] >= 0) rate -= vec3_dot(axis, bodies[j->body[1]].rigid.angular_velocity);
+    return rate;
+}
+
+int tobi_constraint_at_stop(const tobi_constraint *j, double angle)
+{
+    return angle <= j->lower + AT_STOP ? -1 : angle >= j->upper - AT_STOP ? 1 : 0;
+}
+
+static int acts(const tobi_constraint *j) { return j->stiffness > 0 || j->damping > 0; }
+
+void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodies)
+{
+    for (int k = 0; k < c->count; k++) {
+        tobi_constraint *j = &c->at[k];
+        double axis[3];
+        if (!acts(j)) continue;
+        find_axis(j, bodies, axis);
+        memcpy(j->before, j->torque, sizeof j->before);
+        const double turn = remainder(tobi_constraint_angle(j, bodies, 0) - j->rest, 2*acos(-1)),
+                     rate = tobi_constraint_rate(j, bodies);
+        for (int a = 0; a < 3; a++) {
+            j->torque[a] = -j->stiffness*turn*axis[a];
+            j->damped[a] = -j->damping*rate*axis[a];
+        }
+    }
+}
+
+void tobi_constraints_add_springs(const tobi_constraints *c, int body, double now, double before,
+                                  double damped, double torque[3])
+{
+    for (int k = 0; k < c->count; k++) {
+        const tobi_constraint *j = &c->at[k];
+        if (!acts(j) || (j->body[0] != body && j->body[1] != body)) continue;
+        const double side = j->body[0] == body ? 1 : -1;
+        vec3_add_scaled(torque, torque, side*now, j->torque);
+        vec3_add_scaled(torque, torque, side*before, j->before);
+        vec3_add_scaled(torque, torque, side*damped, j->damped);
+    }
+}
+
+/* 1/(kg m2): at most, of a torque about any axis. */
+static double mobility(const tobi_body *b, int dimension)
+{
+    const tobi_rigid *r = &b->rigid;
+    double least = r->inertia[8];
+    if (r->kind == TOBI_PRESCRIBED) return 0;
+    if (dimension == 3) least = fmin(fmin(r->inertia[0], r->inertia[4]), least);
+    return least > 0 ? 1/least : 0;
+}
+
+double tobi_constraints_step_limit(const tobi_constraints *c, const tobi_body *bodies)
+{
+    double limit = INFINITY;
+    for (int k = 0; k < c->count; k++) {
+        const tobi_constraint *j = &c->at[k];
+        double m = acts(j) ? mobility(&bodies[j->body[0]], c->dimension) : 0;
+        if (acts(j) && j->body[1] >= 0) m += mobility(&bodies[j->body[1]], c->dimension);
+        if (!(m > 0)) continue;
+        if (j->stiffness > 0) limit = fmin(limit, 1/(3*sqrt(j->stiffness*m)));
+        if (j->damping > 0) limit = fmin(limit, 1/(3*j->damping*m));
+    }
+    return limit;
+}
