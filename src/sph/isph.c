@@ -62,13 +62,13 @@ int isph_list_memory(tobi_system *s, double **values)
     return ISPH_MEMORY;
 }
 
-/* Solids answer a step late: they swing where long waves pass more of a spacing in a step, and where they
-   themselves swing too much in one (decision 84). */
+/* Solids answer a step late: they swing where long waves pass more of a spacing in a step and, without
+   gravity, where they themselves swing too much in one (decision 84). */
 static double choose_soft_dt(const tobi_system *s)
 {
     if (!s->sim->soft.solids) return INFINITY;
-    return s->smoothing.spacing*fmin(SOFT_COURANT/sqrt(fmax(s->start_head, 1e-24)),
-                                     STIFF_COURANT/fmax(sph_soft_wave_speed(s), 1e-12));
+    if (s->start_head > 0) return SOFT_COURANT*s->smoothing.spacing/sqrt(s->start_head);
+    return STIFF_COURANT*s->smoothing.spacing/fmax(sph_soft_wave_speed(s), 1e-12);
 }
 
 /* Particles and a body may go against each other: cfl bounds what both go. A thin tail drew a cavity into the
