@@ -99,6 +99,7 @@ for spacing, end in case.pick([(0.01, 0.15)], [(0.01, 6), (0.008, 5)]):
     out, times, drag, lift = flow(f"soft_{1e3*spacing:g}", spacing, end, [WET], solids=[SOFT],
                                   mlsmpm={"spacing": SPACING})
     half = len(times)//2
+    case.hold(f"{text}: steps are at most 2 d/c, decision 84", max(read_table(out/"history.csv")["dt"]) <= 2*spacing/40.8)
     flag = read_table(out/"solids.csv")["mean_liquid_force_x"][1:]
     at, ways = follow_end(out, SPACING, 1)
     judge(f"{text}: drag, N/m,", mean(drag[half:]), 14.295, 0.03)
