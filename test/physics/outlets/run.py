@@ -96,7 +96,7 @@ def pipe(method, across):
 
 curves = []
 for name in case.pick(("isph", "eisph"), METHODS):
-    for number in case.pick((10,), (20, 40)):
+    for number in case.pick((10,), (20, 40) if name == "isph" else (20,)):
         rest(name, number, case.pick(1, 4))
         if not (case.smoke and name == "eisph"):
             fall(name, number, case.pick(6, 8))
