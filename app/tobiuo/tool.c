@@ -33,6 +33,7 @@ int run_tool(const char *folder, char *const arguments[], const char *does, cons
 int run_gnuplot(const char *folder)
 {
     char *const arguments[] = { "gnuplot", "-d", "plots.gnuplot", NULL };
+    setenv("LC_ALL", "C.UTF-8", 1);      /* without a locale, as in a container, it warns of degree signs */
     const int code = run_tool(folder, arguments, "draws the pictures", "gnuplot-nox", 0);
     return code < 0 ? complain("gnuplot failed on %s/plots.gnuplot", folder) : code;
 }
