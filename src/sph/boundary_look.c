@@ -108,6 +108,7 @@ static void sum_points(const look *l)
         }
         e.wall_flux -= aw*dot(n, v);
         e.share += aw*reach;
+        e.steady += aw*reach*tobi_boundary_rise(s, e.distance, c->spacing);
         e.height += aw*s;
         if (b->friction != TOBI_NO_SLIP) continue;
         const double rate = 2*aw/fmax(s, 0.25*c->spacing);

@@ -17,6 +17,7 @@ typedef struct tobi_boundary_link {
 typedef struct tobi_boundary_entry {
     double wall_flux;         /* -sum A W n . v_b, 1/s                                            */
     double share;             /* lambda: share of the kernel inside or behind the body            */
+    double steady;            /* of share: points fade in, tobi_boundary_rise                      */
     double height;            /* sum A W s, s the height above each point's plane                 */
     double hidden;            /* sum V F r^2 over cut pairs, by the dimension; in a particle's last  */
     double hydrostatic[3];    /* acceleration by the hydrostatic part of the mirrored pressure    */

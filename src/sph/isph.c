@@ -110,7 +110,8 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     TOBI_TRY(sph_find_neighbors(s, clock, err));
     sph_bind_view(s, &m->view, m->memory.vessel);
     TOBI_TRY(sph_classify_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
-    if (!classified) TOBI_TRY(sph_find_neighbors(s, clock, err));     /* all pairs, to be cut again */
+    if (!classified && s->sim->body_count > 0)       /* all pairs, to be cut again */
+        TOBI_TRY(sph_find_neighbors(s, clock, err));
     sph_bind_view(s, &m->view, m->memory.vessel);
     m->solver.view.held = NULL;
     m->solver.view.open = m->solver.view.fades = m->memory.vessel != SPH_VESSEL_FULL;

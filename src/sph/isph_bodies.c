@@ -46,7 +46,7 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *l
     const tobi_smoothing_constants *c = &s->smoothing;
     const double lambda = tobi_wall_table_at(c->plane.lambda, fmax(e->distance, 0)/c->h*TOBI_PLANE_SAMPLES);
     if (e->triangle < 0) return m;
-    m.share = lambda > 1e-6 ? fmin(e->share/lambda, 1) : 0;
+    m.share = lambda > 1e-6 ? fmin(e->steady/lambda, 1) : 0;
     memcpy(m.offset, e->offset, sizeof m.offset);
     find_normal(link, e, c, m.normal);
     const tobi_body *b = &s->sim->bodies[link->body];
@@ -68,7 +68,7 @@ static void make_mirrors(const void *view, int64_t begin, int64_t end)
     const tobi_boundary_links *n = &sph_of(all->s)->links;
     isph_mirror *m = all->m->mirror, more[ISPH_CORNER_FACES];
     for (int64_t k = begin; k < end; k++) {
-        isph_body_sides_add(all->s, &n->link[k], &n->entry[k].share, &n->entry[k].height);
+        isph_body_sides_add(&all->m->view, all->s, &n->link[k], &n->entry[k]);
         m[k] = make_mirror(all->s, &n->link[k], &n->entry[k]);
         if (!all->m->corners) continue;
         const int found = isph_corner_find(all->s, &n->link[k], &n->entry[k], &m[k], more);
@@ -84,7 +84,7 @@ static void make_mirrors(const void *view, int64_t begin, int64_t end)
 /* Of the trace of (2): by the theorem of Gauss the kernel's share and a share of the heights. */
 static float share_of_trace(const tobi_system *s, const tobi_boundary_entry *e)
 {
-    return (float)fmin(e->share + e->height/s->smoothing.dimension, 0.98);
+    return (float)fmin(e->steady + e->height/s->smoothing.dimension, 0.98);
 }
 
 /* The links of a particle are handled together, where the last of them stands. */
