@@ -16,27 +16,38 @@ double tobi_outlet_depth(const tobi_opening *o, const tobi_smoothing_constants *
     return o->gives ? 2*c->h + KEPT*c->spacing : c->h;
 }
 
-/* What lies beyond an outlet, or nearly. */
+/* Whether a row lies beyond an outlet, or nearly; where. */
+static int locate(const tobi_system *s, const tobi_opening *o, int64_t i, double at[3])
+{
+    const double d = s->smoothing.spacing;
+    const tobi_double3 *p = &s->particles.position[i];
+    const double x[3] = { p->x, p->y, p->z };
+    tobi_opening_locate(o, x, at);
+    return at[0] >= -d && at[0] <= tobi_outlet_depth(o, &s->smoothing) + d && tobi_opening_faces(o, at);
+}
+
+static int is_beyond(const tobi_system *s, const tobi_opening *o, int64_t i)
+{
+    double at[3];
+    return locate(s, o, i, at);
+}
+
 static tobi_status gather(tobi_world *w, const tobi_opening *o, int64_t *count, tobi_error *err)
 {
     const tobi_system *s = &w->system[0];
-    const double d = s->smoothing.spacing, end = tobi_outlet_depth(o, &s->smoothing) + d;
-    *count = 0;
-    for (int64_t i = 0; i < s->particles.count; i++) {
-        const tobi_double3 *p = &s->particles.position[i];
-        const double x[3] = { p->x, p->y, p->z };
-        double at[3];
-        tobi_opening_locate(o, x, at);
-        if (at[0] < -d || at[0] > end || !tobi_opening_faces(o, at)) continue;
-        if (*count == w->beyond_room) {
-            const int64_t room = 2*w->beyond_room + 256;
-            tobi_beyond *more = realloc(w->beyond, (size_t)room*sizeof *more);
-            if (!more)
-                return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the liquid at outlet '%s'", o->name);
-            w->beyond = more;
-            w->beyond_room = room;
-        }
-        w->beyond[(*count)++] = (tobi_beyond){ { at[0], at[1], at[2] }, i, s->particles.id[i] };
+    TOBI_TRY(tobi_openings_choose(w, is_beyond, o, count, err));
+    if (*count > w->beyond_room) {
+        const int64_t room = *count + *count/2 + 64;
+        tobi_beyond *more = realloc(w->beyond, (size_t)room*sizeof *more);
+        if (!more)
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the liquid at outlet '%s'", o->name);
+        w->beyond = more;
+        w->beyond_room = room;
+    }
+    for (int64_t k = 0; k < *count; k++) {
+        tobi_beyond *b = &w->beyond[k];
+        *b = (tobi_beyond){ .row = w->chosen[k], .id = s->particles.id[w->chosen[k]] };
+        locate(s, o, b->row, b->at);
     }
     return TOBI_OK;
 }

@@ -318,8 +318,8 @@ void tobi_openings_free(tobi_world *w)
 {
     for (int k = 0; k < w->sim.opening_count; k++) free_opening(&w->sim.openings[k]);
     free(w->sim.openings);
-    free(w->leaving);
-    free(w->leaving_block);
+    free(w->chosen);
+    free(w->chosen_block);
     free(w->beyond);
 }
 
@@ -410,9 +410,11 @@ tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err)
 
 /* --- a step ---------------------------------------------------------------------------------- */
 
-static int is_gone(const tobi_system *s, int64_t i)
+/* Through any outlet. */
+static int is_gone(const tobi_system *s, const tobi_opening *none, int64_t i)
 {
     const tobi_simulation *w = s->sim;
+    (void)none;
     const tobi_double3 *p = &s->particles.position[i];
     const double x[3] = { p->x, p->y, p->z };
     for (int k = 0; k < w->opening_count; k++) {
@@ -425,17 +427,23 @@ static int is_gone(const tobi_system *s, int64_t i)
     return 0;
 }
 
-/* Blocks of rows: how many of each are gone; or, with their first place in the list, which. */
-typedef struct leaving { const tobi_system *s; int64_t *block; int32_t *row; } leaving;
+/* Blocks of rows: how many of each are wanted; or, with their first place in the list, which. */
+typedef struct choosing {
+    const tobi_system *s;
+    tobi_opening_wants wants;
+    const tobi_opening *o;
+    int64_t *block;
+    int32_t *row;
+} choosing;
 
-static void find_leaving(const void *view, int64_t begin, int64_t end)
+static void choose_range(const void *view, int64_t begin, int64_t end)
 {
-    const leaving *l = view;
+    const choosing *l = view;
     for (int64_t b = begin; b < end; b++) {
         const int64_t from = b*TOBI_BLOCK, to = from + TOBI_BLOCK, n = l->s->particles.count;
         int64_t found = l->row ? l->block[b] : 0;
         for (int64_t i = from; i < to && i < n; i++) {
-            if (!is_gone(l->s, i)) continue;
+            if (!l->wants(l->s, l->o, i)) continue;
             if (l->row) l->row[found] = (int32_t)i;
             found++;
         }
@@ -448,28 +456,38 @@ static tobi_status grow(void **p, int64_t *room, int64_t need, size_t size, tobi
     if (need <= *room) return TOBI_OK;
     void *more = realloc(*p, (size_t)(need + need/2 + 64)*size);
     if (!more)
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld particles that leave", (long long)need);
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld particles at openings", (long long)need);
     *p = more;
     *room = need + need/2 + 64;
+    return TOBI_OK;
+}
+
+tobi_status tobi_openings_choose(tobi_world *w, tobi_opening_wants wants, const tobi_opening *o,
+                                 int64_t *count, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    const int64_t blocks = (s->particles.count + TOBI_BLOCK - 1)/TOBI_BLOCK;
+    TOBI_TRY(grow((void **)&w->chosen_block, &w->chosen_blocks, blocks + 1, sizeof *w->chosen_block, err));
+    choosing l = { s, wants, o, w->chosen_block, NULL };
+    tobi_loop(w->sim.exec.threads, blocks, 8, choose_range, &l);
+    *count = tobi_scan(&w->sim.exec, blocks, w->chosen_block);
+    if (*count == 0) return TOBI_OK;
+    TOBI_TRY(grow((void **)&w->chosen, &w->chosen_room, *count, sizeof *w->chosen, err));
+    l.row = w->chosen;
+    tobi_loop(w->sim.exec.threads, blocks, 8, choose_range, &l);
     return TOBI_OK;
 }
 
 static tobi_status remove_rows(tobi_world *w, tobi_error *err)
 {
     tobi_system *s = &w->system[0];
-    const int64_t blocks = (s->particles.count + TOBI_BLOCK - 1)/TOBI_BLOCK;
+    int64_t gone;
     int outlets = 0;
     for (int k = 0; k < w->sim.opening_count; k++) outlets += w->sim.openings[k].outlet;
     if (outlets == 0) return TOBI_OK;
-    TOBI_TRY(grow((void **)&w->leaving_block, &w->leaving_blocks, blocks + 1, sizeof *w->leaving_block, err));
-    leaving l = { s, w->leaving_block, NULL };
-    tobi_loop(w->sim.exec.threads, blocks, 8, find_leaving, &l);
-    const int64_t gone = tobi_scan(&w->sim.exec, blocks, w->leaving_block);
+    TOBI_TRY(tobi_openings_choose(w, is_gone, NULL, &gone, err));
     if (gone == 0) return TOBI_OK;
-    TOBI_TRY(grow((void **)&w->leaving, &w->leaving_room, gone, sizeof *w->leaving, err));
-    l.row = w->leaving;
-    tobi_loop(w->sim.exec.threads, blocks, 8, find_leaving, &l);
-    tobi_particles_remove(&s->particles, w->leaving, gone);
+    tobi_particles_remove(&s->particles, w->chosen, gone);
     s->info.particles_out += gone;
     return TOBI_OK;
 }

@@ -11,6 +11,10 @@ tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err);
 int tobi_openings_cover(const tobi_simulation *s, const double x[3]);
 /* After a step: what has gone out is removed, what follows in the buffers is added. */
 tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err);
+/* Rows that are wanted, in their order, into w->chosen. Errors: no memory. */
+typedef int (*tobi_opening_wants)(const tobi_system *s, const tobi_opening *o, int64_t i);
+tobi_status tobi_openings_choose(tobi_world *w, tobi_opening_wants wants, const tobi_opening *o,
+                                 int64_t *count, tobi_error *err);
 /* backflow.c: fills the buffers of outlets whose pressure is given. */
 tobi_status tobi_openings_give(tobi_world *w, tobi_error *err);
 /* How far beyond its plane an outlet keeps particles, m. */

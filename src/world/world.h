@@ -31,9 +31,9 @@ struct tobi_world {
     int line_count;
     tobi_probe *probes;
     int probe_count;
-    int32_t *leaving;              /* owned: rows that outlets take, of the step at hand           */
-    int64_t *leaving_block;        /* owned: their number in each block of rows                    */
-    int64_t leaving_room, leaving_blocks;
+    int32_t *chosen;               /* owned: rows that an outlet takes or copies, of the step at hand */
+    int64_t *chosen_block;         /* owned: their number in each block of rows                    */
+    int64_t chosen_room, chosen_blocks;
     tobi_beyond *beyond;           /* owned: what lies beyond an outlet, backflow.c               */
     int64_t beyond_room;
     char **notes;                  /* owned texts                                            */
