@@ -200,20 +200,22 @@ static double dot6(const double a[6], const double b[6])
     return vec3_dot(a, b) + vec3_dot(a + 3, b + 3);
 }
 
+void tobi_constraint_inverse(const tobi_rigid *r, double w[6][6])
+{
+    double shift[3], turn[3][3], s[6];
+    tobi_rigid_inverse(r, shift, turn);
+    tobi_joint_freedom(r, s);
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++) w[i][j] = r->joint.kind ? s[i]*s[j] : 0;
+    for (int i = 0; i < 3; i++) {
+        w[i][i] += shift[i];
+        for (int j = 0; j < 3; j++) w[3 + i][3 + j] += turn[i][j];
+    }
+}
+
 void tobi_constraints_take_inverse(tobi_constraints *c, const tobi_body *bodies)
 {
-    for (int k = 0; k < c->slots; k++) {
-        const tobi_rigid *r = &bodies[c->body[k]].rigid;
-        double shift[3], turn[3][3], s[6], (*w)[6] = c->inverse[k];
-        tobi_rigid_inverse(r, shift, turn);
-        tobi_joint_freedom(r, s);
-        for (int i = 0; i < 6; i++)
-            for (int j = 0; j < 6; j++) w[i][j] = r->joint.kind ? s[i]*s[j] : 0;
-        for (int i = 0; i < 3; i++) {
-            w[i][i] += shift[i];
-            for (int j = 0; j < 3; j++) w[3 + i][3 + j] += turn[i][j];
-        }
-    }
+    for (int k = 0; k < c->slots; k++) tobi_constraint_inverse(&bodies[c->body[k]].rigid, c->inverse[k]);
 }
 
 /* J W J^T of two rows. */

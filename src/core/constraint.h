@@ -75,7 +75,9 @@ void tobi_constraints_add_springs(const tobi_constraints *c, int body, double no
 /* s: a third of a radian of the fastest swing that springs and dampers make; INFINITY: none. */
 double tobi_constraints_step_limit(const tobi_constraints *c, const tobi_body *bodies);
 
-/* W of the bodies as they are. */
+/* W of a body as it is: its velocities by an impulse, without joints to other bodies. */
+void tobi_constraint_inverse(const tobi_rigid *r, double w[6][6]);
+/* W of all bodies. */
 void tobi_constraints_take_inverse(tobi_constraints *c, const tobi_body *bodies);
 /* J at the present pose and the factor of J W J^T, for W in `inverse`. */
 void tobi_constraints_factor(tobi_constraints *c, const tobi_body *bodies);

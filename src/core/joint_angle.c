@@ -78,14 +78,18 @@ void tobi_constraints_add_springs(const tobi_constraints *c, int body, double no
     }
 }
 
-/* 1/(kg m2): at most, of a torque about any axis. */
-static double mobility(const tobi_body *b, int dimension)
+/* 1/(kg m2): how fast both bodies turn about the axis by a torque about it, free; joined they are slower. */
+static double mobility(const tobi_constraint *j, const tobi_body *bodies)
 {
-    const tobi_rigid *r = &b->rigid;
-    double least = r->inertia[8];
-    if (r->kind == TOBI_PRESCRIBED) return 0;
-    if (dimension == 3) least = fmin(fmin(r->inertia[0], r->inertia[4]), least);
-    return least > 0 ? 1/least : 0;
+    double axis[3], sum = 0;
+    find_axis(j, bodies, axis);
+    for (int side = 0; side < 2; side++) {
+        double w[6][6];
+        if (j->body[side] < 0 || bodies[j->body[side]].rigid.kind == TOBI_PRESCRIBED) continue;
+        tobi_constraint_inverse(&bodies[j->body[side]].rigid, w);
+        for (int a = 0; a < 3; a++) sum += axis[a]*vec3_dot(&w[3 + a][3], axis);
+    }
+    return sum;
 }
 
 double tobi_constraints_step_limit(const tobi_constraints *c, const tobi_body *bodies)
@@ -93,8 +97,7 @@ double tobi_constraints_step_limit(const tobi_constraints *c, const tobi_body *b
     double limit = INFINITY;
     for (int k = 0; k < c->count; k++) {
         const tobi_constraint *j = &c->at[k];
-        double m = acts(j) ? mobility(&bodies[j->body[0]], c->dimension) : 0;
-        if (acts(j) && j->body[1] >= 0) m += mobility(&bodies[j->body[1]], c->dimension);
+        const double m = acts(j) ? mobility(j, bodies) : 0;
         if (!(m > 0)) continue;
         if (j->stiffness > 0) limit = fmin(limit, 1/(3*sqrt(j->stiffness*m)));
         if (j->damping > 0) limit = fmin(limit, 1/(3*j->damping*m));
