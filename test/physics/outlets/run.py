@@ -43,10 +43,16 @@ def run_pool(method, layers, level, viscosity, end):
     return read/(RHO*G*(level - 0.02)) - 1, late/level - 1, times, levels
 
 
+def try_pool(label, *pool):
+    """What run_pool finds; None, and a figure that says so, if it ends early."""
+    found = run_pool(*pool)
+    case.figure(f"{label}: runs to its end", int(found is not None), "1", found is not None)
+    return found
+
+
 def rest(method, layers, end):
     label = f"rest, {method}, {layers} layers"
-    found = run_pool(method, layers, DEEP, 0.001, end)
-    case.figure(f"{label}: runs to its end", int(found is not None), "1", found is not None)
+    found = try_pool(label, method, layers, DEEP, 0.001, end)
     if found is None:
         return
     case.figure(f"{label}: pressure of the sensor, deviation", found[0], "within 0.02", abs(found[0]) <= 0.02)
@@ -55,8 +61,7 @@ def rest(method, layers, end):
 
 def fall(method, layers, end):
     label = f"lower level, {method}, {layers} layers"
-    found = run_pool(method, layers, LOWER, 1, end)
-    case.figure(f"{label}: runs to its end", int(found is not None), "1", found is not None)
+    found = try_pool(label, method, layers, LOWER, 1, end)
     if found is None:
         return
     case.figure(f"{label}: mean level, deviation", found[1], "within 0.05", abs(found[1]) <= 0.05)

@@ -44,7 +44,7 @@ def fish_means(out):
 
 
 wing, curves = [], []
-for spacing in case.pick((0.16/23, 0.16/26), (0.004, 0.0032)):
+for spacing in case.pick((0.16/22, 0.16/27), (0.004, 0.0032)):
     out = case.run(f"wing{spacing:g}", "--spacing", spacing, "--until", case.pick(0.2, 0.3), "--set", "speed_limit=10")
     value, table = force(out, "wing", "x", 0.1)
     wing.append(value)
