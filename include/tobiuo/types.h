@@ -20,8 +20,7 @@ extern "C" {
 enum {
     TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_REGION_LIMIT = 2048,
     TOBI_BODY_LIMIT = 1024, TOBI_PLANE_LIMIT = 26, TOBI_PROBE_LIMIT = 1024,
-    TOBI_INLET_LIMIT = 32, TOBI_OUTLET_LIMIT = 32,
-    TOBI_INTERFACE_LIMIT = 28
+    TOBI_INLET_LIMIT = 32, TOBI_OUTLET_LIMIT = 32, TOBI_INTERFACE_LIMIT = 28
 };
 
 typedef enum tobi_smoothing {
@@ -414,8 +413,9 @@ typedef struct tobi_joint_def {
     int    kind;                /* tobi_joint_between; in 2-D both are the same                      */
     const char *body;           /* name of a free or controlled body                                 */
     const char *to_body;        /* name of another body, not a deforming one; NULL = the domain      */
-    double point[3], axis[3];   /* m, as the bodies start; of a hinge, 0 in 2-D: along z             */
-    double lower, upper, stiffness, rest, damping;   /* of a hinge: stops, spring, damper, in degrees */
+    double point[3], axis[3];   /* m, of any length: as the bodies start. axis of a hinge, 0: z      */
+    double lower, upper, rest;  /* degrees, of a hinge: its stops, both 0 = none; rest of its spring */
+    double stiffness, damping;  /* N m/rad, N m s/rad, of a hinge                                    */
 } tobi_joint_def;
 
 /* A joint after a step. */
