@@ -192,6 +192,9 @@ int encode_pictures(const char *dir, const char *out, double rate);
 /* Number of pictures in DIR/frames; one of them, NULL: no memory. */
 int64_t count_pictures(const char *dir, const char *view);
 char *frame_path(const char *dir, const char *view, int64_t number);
+/* draw.c: draws from the results of the run in dir, with values of its scene changed, the pictures that
+   folder/frames lacks, from the first missing one on. Returns the exit code. */
+int draw_missing(const char *dir, const char *view, const overrides *set, const char *folder);
 /* sheet.c: a dozen of them in one PNG. Returns the exit code. */
 int make_sheet(const char *dir, const char *view, const char *out);
 

@@ -1,12 +1,14 @@
-/* tobiuo picture DIR: a picture of an output of a finished run, with the settings of its scene, each of
-   which can be changed. Drawback: the world of the scene is made anew for its colours, in some tenths of a
-   second. */
+/* Pictures of outputs of a finished run, with the settings of its scene, each of which can be changed: one by
+   tobiuo picture DIR, or those that a movie lacks (decision 91). Drawback: the world of the scene is made anew
+   for its colours, in some tenths of a second. */
 #define _GNU_SOURCE
 #include "app.h"
 #include "tobiuo/drawing.h"
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 typedef struct draw_options {
     const char *dir, *out, *view;
@@ -59,6 +61,7 @@ typedef struct source {
     tobi_scene *scene;
     const tobi_view_def *view;         /* of the scene */
     tobi_looks looks;
+    tobi_results *results;
     tobi_moment moment;
     tobi_drawing *drawing;
 } source;
@@ -67,6 +70,7 @@ static void free_source(source *s)
 {
     tobi_drawing_free(s->drawing);
     tobi_moment_free(&s->moment);
+    tobi_results_free(s->results);
     tobi_looks_free(&s->looks);
     tobi_scene_free(s->scene);
 }
@@ -83,45 +87,88 @@ static int64_t find_output(const draw_options *o, const tobi_results *results)
     return best;
 }
 
-static int read_moment(const draw_options *o, source *s)
+static int find_view(source *s, const char *dir, const char *name)
 {
-    tobi_results *results = NULL;
+    const tobi_output_def *output = tobi_scene_output_def(s->scene);
+    s->view = name ? NULL : &output->view;
+    for (int k = 0; !s->view && k < output->view_count; k++)
+        if (strcmp(output->views[k].name, name) == 0) s->view = &output->views[k];
+    return s->view ? 0 : complain("the scene of %s has no view '%s'", dir, name);
+}
+
+static int open_source(source *s, const char *dir, const char *view, const overrides *set)
+{
     tobi_error err = { 0 };
-    tobi_status status = tobi_results_open(o->dir, &results, &err);
-    if (status == TOBI_OK) status = tobi_results_read(results, find_output(o, results), &s->moment, &err);
-    tobi_results_free(results);
+    int code = load_looks(dir, set, &s->scene, &s->looks);
+    if (code == 0) code = find_view(s, dir, view);
+    if (code == 0 && tobi_results_open(dir, &s->results, &err) != TOBI_OK) code = complain("%s", err.text);
+    return code;
+}
+
+/* The drawing of an output; that before is gone. */
+static int draw_output(source *s, const char *dir, int64_t output)
+{
+    tobi_error err = { 0 };
+    tobi_drawing_free(s->drawing);
+    s->drawing = NULL;
+    tobi_moment_free(&s->moment);
+    tobi_status status = tobi_results_read(s->results, output, &s->moment, &err);
+    if (status == TOBI_OK && s->view->paths) status = tobi_tracks_read(dir, &s->moment, &err);
+    if (status == TOBI_OK) status = tobi_drawing_make(&s->looks, &s->moment, s->view, &s->drawing, &err);
     return status == TOBI_OK ? 0 : complain("%s", err.text);
 }
 
-static int find_view(const draw_options *o, source *s)
+static int write_drawing(const source *s, const char *out)
 {
-    const tobi_output_def *output = tobi_scene_output_def(s->scene);
-    s->view = o->view ? NULL : &output->view;
-    for (int k = 0; !s->view && k < output->view_count; k++)
-        if (strcmp(output->views[k].name, o->view) == 0) s->view = &output->views[k];
-    return s->view ? 0 : complain("the scene of %s has no view '%s'", o->dir, o->view);
+    tobi_error err = { 0 };
+    return tobi_picture_write(out, tobi_drawing_picture(s->drawing), &err) == TOBI_OK
+        ? 0 : complain("%s", err.text);
 }
 
 static int draw(const draw_options *o, source *s)
 {
-    tobi_error err = { 0 };
     char *path = NULL;
-    int code = load_looks(o->dir, &o->set, &s->scene, &s->looks);
-    if (code == 0) code = read_moment(o, s);
-    if (code == 0) code = find_view(o, s);
-    if (code == 0 && s->view->paths && tobi_tracks_read(o->dir, &s->moment, &err) != TOBI_OK)
-        code = complain("%s", err.text);
+    int code = open_source(s, o->dir, o->view, &o->set);
+    if (code == 0) code = draw_output(s, o->dir, find_output(o, s->results));
     if (code != 0) return code;
-    if (tobi_drawing_make(&s->looks, &s->moment, s->view, &s->drawing, &err) != TOBI_OK)
-        return complain("%s", err.text);
     const tobi_picture *p = tobi_drawing_picture(s->drawing);
     if (asprintf(&path, "%s/picture.png", o->dir) < 0) return complain("out of memory");
     const char *out = o->out ? o->out : path, *body = tobi_drawing_body_around(s->drawing);
     if (body)
         fprintf(stderr, "tobiuo: note: the camera is inside of the body '%s', which hides all else\n", body);
-    if (tobi_picture_write(out, p, &err) != TOBI_OK) code = complain("%s", err.text);
-    else printf("picture: %s, %d x %d, %s\n", out, p->width, p->height, p->title);
+    code = write_drawing(s, out);
+    if (code == 0) printf("picture: %s, %d x %d, %s\n", out, p->width, p->height, p->title);
     free(path);
+    return code;
+}
+
+static int draw_from(source *s, const char *dir, const char *view, const char *folder, int64_t first)
+{
+    const int64_t count = tobi_results_count(s->results);
+    int code = 0;
+    if (first < count)
+        fprintf(stderr, "tobiuo: note: draws %lld pictures into %s/frames\n", (long long)(count - first),
+                folder);
+    for (int64_t k = first; code == 0 && k < count; k++) {
+        char *path = frame_path(folder, view, k);
+        code = path ? draw_output(s, dir, k) : complain("out of memory");
+        if (code == 0) code = write_drawing(s, path);
+        free(path);
+    }
+    return code;
+}
+
+int draw_missing(const char *dir, const char *view, const overrides *set, const char *folder)
+{
+    source s = { 0 };
+    char *frames = NULL;
+    if (asprintf(&frames, "%s/frames", folder) < 0) return complain("out of memory");
+    int code = open_source(&s, dir, view, set);
+    if (code == 0 && mkdir(frames, 0777) != 0 && errno != EEXIST)
+        code = complain("cannot make the folder %s: %s", frames, strerror(errno));
+    if (code == 0) code = draw_from(&s, dir, view, folder, count_pictures(folder, view));
+    free_source(&s);
+    free(frames);
     return code;
 }
 

@@ -1,5 +1,6 @@
-/* tobiuo movie DIR: the pictures of a run as a movie, encoded by ffmpeg, or as a sheet (sheet.c). The movie
-   runs as fast as the scene did, or slower by a given factor. Drawback: what makes it is a second program. */
+/* tobiuo movie DIR: the pictures of a run as a movie, encoded by ffmpeg, or as a sheet (sheet.c). Pictures that
+   are missing are drawn from the results (decision 91). The movie runs as fast as the scene did, or slower by a
+   given factor. Drawback: what makes it is a second program. */
 #define _GNU_SOURCE
 #include "app.h"
 #include "table.h"
@@ -13,14 +14,21 @@
 /* Pictures per second at most: more are left out. */
 static const double FASTEST = 60;
 
-typedef struct movie_options { const char *dir, *out, *view; double slow; int force; } movie_options;
+typedef struct movie_options {
+    const char *dir, *out, *view;
+    double slow;
+    int force;
+    overrides set;
+} movie_options;
 
-enum { KEY_SLOW = KEY_OWN, KEY_FORCE, KEY_VIEW };
+enum { KEY_SLOW = KEY_OWN, KEY_FORCE, KEY_VIEW, KEY_VALUE };
 
 static const struct argp_option options[] = {
     { "out", 'o', "FILE", 0, "the movie: .mp4, .webm, .webp or .gif; or a sheet of a dozen pictures: .png "
         "(DIR/movie.mp4)", 0 },
     { "view", KEY_VIEW, "NAME", 0, "the pictures of this entry of output.views", 0 },
+    { "set", KEY_VALUE, "PATH=VALUE", 0, "draw all pictures anew with this value of the scene, e.g. "
+        "output.picture.field=pressure", 0 },
     { "slow", KEY_SLOW, "N", 0, "N times slower than the scene was (1)", 0 },
     { "force", KEY_FORCE, NULL, 0, "replace FILE", 0 },
     { 0 }
@@ -71,6 +79,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
         break;
     case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;
     case KEY_VIEW: o->view = value; break;
+    case KEY_VALUE: overrides_add(&o->set, "%s", value); break;
     case KEY_FORCE: o->force = 1; break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
@@ -191,26 +200,25 @@ int encode_pictures(const char *dir, const char *out, double rate)
     return write_movie(dir, NULL, out, find_kind(out), rate);
 }
 
-/* s between the pictures of a run; 0 after a complaint. */
-static double check_pictures(const char *dir, const char *view, int64_t count, int64_t *outputs)
+/* s between the pictures of a run, of which there are `count`; 0 after a complaint. */
+static double check_pictures(const char *dir, int64_t count, int64_t *outputs)
 {
     const double interval = count > 0 ? find_interval(dir, outputs) : 0;
     if (access(dir, F_OK) != 0) complain_run(dir, "there is no run");
-    else if (count == 0 && view) complain("%s has no pictures of a view '%s'", dir, view);
-    else if (count == 0) complain("%s has no pictures: run the scene with --frames, or with --movie", dir);
+    else if (count == 0) complain("%s has no pictures", dir);
     else if (count < 2 || !(interval > 0)) complain("%s has one output only, which is no movie", dir);
     else return interval;
     return 0;
 }
 
-int make_movie(const char *dir, const char *view, const char *out, double slow, int force)
+/* Of the run in dir, whose pictures are in at/frames. */
+static int make_movie_of(const char *dir, const char *at, const char *view, const char *out, double slow)
 {
-    const int64_t count = count_pictures(dir, view);
+    const int64_t count = count_pictures(at, view);
     int64_t outputs;
-    const double interval = check_pictures(dir, view, count, &outputs);
+    const double interval = check_pictures(dir, count, &outputs);
     if (!(interval > 0)) return EXIT_ERROR;
-    if (!force && access(out, F_OK) == 0) return complain("%s exists; --force replaces it", out);
-    const int code = write_movie(dir, view, out, find_kind(out), 1/(interval*slow));
+    const int code = write_movie(at, view, out, find_kind(out), 1/(interval*slow));
     if (code == 0 && outputs > count)
         complain("%s ends before output %lld of %lld, whose picture is missing", out, (long long)count,
                  (long long)outputs - 1);
@@ -219,12 +227,18 @@ int make_movie(const char *dir, const char *view, const char *out, double slow, 
     return code;
 }
 
+int make_movie(const char *dir, const char *view, const char *out, double slow, int force)
+{
+    const int code = prepare_movie(out, force);
+    return code == 0 ? make_movie_of(dir, dir, view, out, slow) : code;
+}
+
 int make_small_movie(const char *dir, const char *out, double *slow)
 {
     static const double SHORTEST = 4, STEPS[] = { 1, 2, 5, 10 };       /* s of a movie */
     const int64_t count = count_pictures(dir, NULL);
     int64_t outputs;
-    const double interval = check_pictures(dir, NULL, count, &outputs);
+    const double interval = check_pictures(dir, count, &outputs);
     if (!(interval > 0)) return EXIT_ERROR;
     const double wanted = fmax(1, SHORTEST/((double)count*interval)), ten = pow(10, floor(log10(wanted)));
     for (int k = 0; k < 4; k++) {
@@ -234,17 +248,58 @@ int make_small_movie(const char *dir, const char *out, double *slow)
     return write_movie(dir, NULL, out, &small, 1/(interval**slow));
 }
 
-static int write_sheet(const char *dir, const char *view, const char *out, int force)
+/* A movie, or a sheet, of the pictures in at/frames. */
+static int make(const movie_options *o, const char *at, const char *out)
 {
-    if (access(dir, F_OK) != 0) return complain_run(dir, "there is no run");
-    if (!force && access(out, F_OK) == 0) return complain("%s exists; --force replaces it", out);
-    const int code = make_sheet(dir, view, out);
+    if (!is_png(out)) return make_movie_of(o->dir, at, o->view, out, o->slow);
+    const int code = make_sheet(at, o->view, out);
     if (code == 0) printf("sheet: %s\n", out);
     return code;
 }
 
+/* With what is there, if the rest cannot be drawn: somebody may have kept the pictures alone. */
+static int complete_and_make(const movie_options *o, const char *out)
+{
+    int64_t outputs;
+    find_interval(o->dir, &outputs);
+    const int code = count_pictures(o->dir, o->view) < outputs ? draw_missing(o->dir, o->view, &o->set, o->dir)
+                                                               : 0;
+    return code == 0 || count_pictures(o->dir, o->view) > 0 ? make(o, o->dir, out) : code;
+}
+
+static void remove_pictures(const char *folder, const char *view)
+{
+    char *frames = NULL;
+    for (int64_t k = count_pictures(folder, view) - 1; k >= 0; k--) {
+        char *path = frame_path(folder, view, k);
+        if (path) unlink(path);
+        free(path);
+    }
+    if (asprintf(&frames, "%s/frames", folder) >= 0) {
+        rmdir(frames);
+        free(frames);
+    }
+    rmdir(folder);
+}
+
+/* In a folder that is removed: the pictures of the run stay as its scene has them. */
+static int redraw_and_make(const movie_options *o, const char *out)
+{
+    char *folder = NULL;
+    if (asprintf(&folder, "%s/movie.XXXXXX", o->dir) < 0) return complain("out of memory");
+    int code = mkdtemp(folder) ? 0 : complain("cannot make a folder in %s: %s", o->dir, strerror(errno));
+    if (code == 0) {
+        code = draw_missing(o->dir, o->view, &o->set, folder);
+        if (code == 0) code = make(o, folder, out);
+        remove_pictures(folder, o->view);
+    }
+    free(folder);
+    return code;
+}
+
 const struct argp movie_argp = { .options = options, .parser = parse, .args_doc = "DIR",
-    .doc = "Make a movie of the pictures of the run in DIR, with ffmpeg, or a sheet of a dozen of them." };
+    .doc = "Make a movie of the run in DIR, with ffmpeg, or a sheet of a dozen pictures. Pictures that the run "
+           "did not draw are drawn now, from its results." };
 
 int tobiuo_movie(int argc, char **argv)
 {
@@ -254,8 +309,10 @@ int tobiuo_movie(int argc, char **argv)
     if (asprintf(&own, "%s/movie%s%s.mp4", o.dir, o.view ? "_" : "", o.view ? o.view : "") < 0)
         return complain("out of memory");
     const char *out = o.out ? o.out : own;
-    const int code = is_png(out) ? write_sheet(o.dir, o.view, out, o.force)
-                                   : make_movie(o.dir, o.view, out, o.slow, o.force);
+    int code = access(o.dir, F_OK) == 0 ? prepare_movie(out, o.force) : complain_run(o.dir, "there is no run");
+    if (code == 0 && !is_png(out)) code = check_encoder();
+    if (code == 0) code = o.set.count ? redraw_and_make(&o, out) : complete_and_make(&o, out);
+    overrides_free(&o.set);
     free(own);
     return code;
 }

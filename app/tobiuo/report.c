@@ -220,7 +220,8 @@ static void write_pictures(const report *r)
     double slow = 1;
     fputs("<h2>Pictures</h2>\n", r->file);
     if (count_pictures(r->dir, NULL) == 0) {
-        fputs("<p>There are none: the scene was run without <code>--frames</code>.</p>\n", r->file);
+        fputs("<p>There are none: the scene was run without <code>--frames</code>. "
+              "<code>tobiuo movie</code> draws them.</p>\n", r->file);
     } else {
         if (make_sheet(r->dir, NULL, sheet) == 0)
             embed(r, "<img alt=\"moments of the run\" src=\"", "image/png", sheet, "\">\n");

@@ -93,8 +93,7 @@ int make_sheet(const char *dir, const char *view, const char *out)
     sheet s = { .count = count_pictures(dir, view), .cells = 1, .columns = 1 };
     char *part = NULL;
     int code = 0;
-    if (s.count == 0) return complain("%s has no pictures: run the scene with --frames, or with "
-        "--movie", dir);
+    if (s.count == 0) return complain("%s has no pictures", dir);
     for (int k = 0; code == 0 && k < s.cells; k++) code = draw_cell(&s, dir, view, k);
     if (code == 0 && asprintf(&part, "%s.part", out) < 0) code = complain("out of memory");
     if (code == 0 && !png_image_write_to_file(&s.image, part, 0, s.pixels, 0, NULL))

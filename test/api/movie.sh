@@ -18,10 +18,12 @@ expect 2 "its name ends in .mp4, .webm, .webp or .gif" movie nowhere --out film.
 expect 2 "its name ends in .mp4, .webm, .webp or .gif" run drop.json --movie film
 expect 1 "there is no run" movie nowhere
 expect 0 "" run drop.json --out plain --quiet
-expect 1 "plain has no pictures: run the scene with --frames, or with --movie" movie plain
-expect 0 "" run drop.json --out short --quiet --frames --until 0.001 --set output.interval=1
-rm -f short/frames/frame_000001.png
-expect 1 "has one output only" movie short
+expect 0 "draws 11 pictures into plain/frames" movie plain --out plain.png
+expect 1 "the scene of plain has no view 'q'" movie plain --view q --out q.png
+expect 1 'there is no field "colour"' movie plain --set output.picture.field=colour --out q.png
+expect 0 "draws 11 pictures" movie plain --set output.picture.field=pressure --out pressure.png
+check "values for one movie change it" test "$(cmp -s plain.png pressure.png; echo $?)" = 1
+check "and leave nothing" test -z "$(ls -d plain/movie.* 2> /dev/null)"
 expect 0 "" run drop.json --out "100%d run" --quiet --frames
 got=0; PATH=/nonexistent "$program" movie "100%d run" > out.txt 2> err.txt || got=$?
 check "ffmpeg missing: exit code 1 (was $got)" test $got = 1
@@ -29,6 +31,12 @@ check "ffmpeg missing: the package is named" grep -q "apt-get install ffmpeg" er
 got=0; PATH=/nonexistent "$program" run drop.json --out never --movie a.mp4 > out.txt 2> err.txt || got=$?
 check "a run goes on without its movie (exit code $got)" test $got = 1 -a -s never/frames/frame_000001.png
 check "and says so" grep -q "the run goes on and keeps its pictures; later: tobiuo movie never" err.txt
+check "pictures drawn afterwards are those of the run" diff -r plain/frames "100%d run/frames"
+rm "100%d run/frames/frame_000007.png"
+expect 0 "draws" movie "100%d run" --out whole.png
+check "one that is missing is drawn" cmp -s "100%d run/frames/frame_000007.png" plain/frames/frame_000007.png
+rm -rf plain/fluid* plain/frames/frame_000010.png
+expect 0 "No such file" movie plain --out kept.png
 touch there.mp4
 expect 1 "there.mp4 exists; --force replaces it" movie "100%d run" --out there.mp4
 expect 1 "there.mp4 exists; --force replaces it" run drop.json --out again --quiet --movie there.mp4
@@ -74,7 +82,7 @@ check "run --movie makes one of each view" is views_p.mp4 11 0.22
 expect 0 "" movie views --view p
 check "movie --view" cmp -s views/movie_p.mp4 views_p.mp4
 check "a view differs from the output's own pictures" test "$(cmp -s views_p.mp4 views.mp4; echo $?)" = 1
-expect 1 "views has no pictures of a view 'q'" movie views --view q
+expect 1 "the scene of views has no view 'q'" movie views --view q
 rm views.mp4
 expect 1 "views_p.mp4 exists; --force replaces it" run drop.json --out no --movie views.mp4 --set "$views"
 expect 1 "ffmpeg failed" movie again --out /proc/film.mp4
