@@ -1,6 +1,6 @@
-/* Pictures of outputs of a finished run, with the settings of its scene, each of which can be changed: one by
-   tobiuo picture DIR, or those that a movie lacks (decision 91). Drawback: the world of the scene is made anew
-   for its colours, in some tenths of a second. */
+/* Pictures of outputs of a finished run, with the settings of its scene, each of which can be changed: one
+   by tobiuo picture DIR, or those that a movie lacks (decision 91). Drawback: the world of the scene is made
+   anew for its colours, in some tenths of a second. */
 #define _GNU_SOURCE
 #include "app.h"
 #include "tobiuo/drawing.h"

@@ -1,6 +1,6 @@
-/* tobiuo movie DIR: the pictures of a run as a movie, encoded by ffmpeg, or as a sheet (sheet.c). Pictures that
-   are missing are drawn from the results (decision 91). The movie runs as fast as the scene did, or slower by a
-   given factor. Drawback: what makes it is a second program. */
+/* tobiuo movie DIR: the pictures of a run as a movie, encoded by ffmpeg, or as a sheet (sheet.c). Pictures
+   that are missing are drawn from the results (decision 91). The movie runs as fast as the scene did, or
+   slower by a given factor. Drawback: what makes it is a second program. */
 #define _GNU_SOURCE
 #include "app.h"
 #include "table.h"
@@ -261,9 +261,9 @@ static int make(const movie_options *o, const char *at, const char *out)
 static int complete_and_make(const movie_options *o, const char *out)
 {
     int64_t outputs;
+    int code = 0;
     find_interval(o->dir, &outputs);
-    const int code = count_pictures(o->dir, o->view) < outputs ? draw_missing(o->dir, o->view, &o->set, o->dir)
-                                                               : 0;
+    if (count_pictures(o->dir, o->view) < outputs) code = draw_missing(o->dir, o->view, &o->set, o->dir);
     return code == 0 || count_pictures(o->dir, o->view) > 0 ? make(o, o->dir, out) : code;
 }
 
@@ -298,8 +298,8 @@ static int redraw_and_make(const movie_options *o, const char *out)
 }
 
 const struct argp movie_argp = { .options = options, .parser = parse, .args_doc = "DIR",
-    .doc = "Make a movie of the run in DIR, with ffmpeg, or a sheet of a dozen pictures. Pictures that the run "
-           "did not draw are drawn now, from its results." };
+    .doc = "Make a movie of the run in DIR, with ffmpeg, or a sheet of a dozen pictures. Pictures that the "
+           "run did not draw are drawn now, from its results." };
 
 int tobiuo_movie(int argc, char **argv)
 {
@@ -309,7 +309,8 @@ int tobiuo_movie(int argc, char **argv)
     if (asprintf(&own, "%s/movie%s%s.mp4", o.dir, o.view ? "_" : "", o.view ? o.view : "") < 0)
         return complain("out of memory");
     const char *out = o.out ? o.out : own;
-    int code = access(o.dir, F_OK) == 0 ? prepare_movie(out, o.force) : complain_run(o.dir, "there is no run");
+    int code = access(o.dir, F_OK) == 0 ? 0 : complain_run(o.dir, "there is no run");
+    if (code == 0) code = prepare_movie(out, o.force);
     if (code == 0 && !is_png(out)) code = check_encoder();
     if (code == 0) code = o.set.count ? redraw_and_make(&o, out) : complete_and_make(&o, out);
     overrides_free(&o.set);
