@@ -31,7 +31,7 @@ tobi_status tobi_exec_init(tobi_exec *x, int threads, tobi_error *err)
     if (threads < 0)
         return tobi_fail(err, TOBI_INVALID, "threads is %d, allowed is 0 (all cores) or more",
                          threads);
-    x->threads = threads > 0 ? threads : omp_get_num_procs();
+    x->threads = threads > 0 ? threads : omp_get_max_threads();    /* heeds OMP_NUM_THREADS */
     x->isa = find_isa();
     const char *wish = getenv("TOBIUO_ISA");   /* tests compare instruction sets with this */
     if (wish && !wish[0]) wish = NULL;

@@ -42,7 +42,7 @@ typedef struct tobi_exec {
     int64_t partial_blocks;
 } tobi_exec;
 
-/* threads = 0 takes all cores. */
+/* threads = 0 takes all cores, or as many as the environment variable OMP_NUM_THREADS says. */
 tobi_status tobi_exec_init(tobi_exec *x, int threads, tobi_error *err);
 void tobi_exec_free(tobi_exec *x);
 /* Makes room for sums over n items, so that launches never allocate. */

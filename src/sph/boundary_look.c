@@ -2,8 +2,8 @@
    A point counts when it faces the particle and no part of the body lies between. For a function f(s)
    of the distance to a plane, sum A W f(s_b)/sigma(s_b) with s_b the distance to the point's tangent
    plane gives f(s) exactly on a plane and its natural extension on curves and edges. The points that face
-   the particle are listed first, without a branch, then weighed together. Drawback: the list is short, and
-   long ones take several rounds. */
+   the particle are listed first, then weighed together. Drawback: the list is short, and long ones take
+   several rounds. */
 #include "sph/boundary.h"
 #include "sph/boundary_look.h"
 #include "sph/hydrostatic.h"
@@ -11,7 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST = 128 };
 /* Of the spacing: so far above a point ends the line of sight. */
 static const double LIFT = 1e-3;
 
@@ -25,42 +24,17 @@ typedef struct look {
     double gravity[3];          /* m/s2, what the particle feels */
     tobi_boundary_link *link;
     tobi_boundary_entry *entry;
-    /* the points that face the particle */
-    int count;
-    const tobi_boundary_point *point[MOST];
-    double square[MOST];        /* m2, the distance to each */
-    double height[MOST];        /* m, above its tangent plane */
-    double weight[MOST];        /* W there */
 } look;
-
-/* Lists points until there is no room; returns the first that was not looked at. */
-static const tobi_boundary_point *list_points(look *l, tobi_point_run run)
-{
-    const double h2 = l->s->smoothing.h*l->s->smoothing.h, x[3] = {l->x[0], l->x[1], l->x[2]};
-    int count = l->count;
-    const int64_t room = MOST - count;
-    const tobi_boundary_point *end = run.end - run.begin > room ? run.begin + room : run.end;
-    for (const tobi_boundary_point *p = run.begin; p < end; p++) {
-        const double r[3] = {x[0] - p->at[0], x[1] - p->at[1], x[2] - p->at[2]};
-        const double square = dot(r, r), height = dot(r, p->normal);
-        l->point[count] = p;
-        l->square[count] = square;
-        l->height[count] = height;
-        count += (square < h2) & (p->area > 0) & (height > 0);
-    }
-    l->count = count;
-    return end;
-}
 
 /* Hidden if it lies behind the tangent plane of the nearest point and the body is in the way, which is not
    when both ends of the line of sight lie above all of the body. */
-static int is_hidden(const look *l, int k)
+static int is_hidden(const look *l, const tobi_facing_points *q, int k)
 {
     const tobi_boundary_entry *e = l->entry;
-    const tobi_boundary_point *p = l->point[k];
+    const tobi_boundary_point *p = q->point[k];
     const double d = l->s->smoothing.spacing;
     double to[3], from_foot[3];
-    if (p->outermost && l->height[k] > LIFT*d) return 0;
+    if (p->outermost && q->height[k] > LIFT*d) return 0;
     for (int a = 0; a < 3; a++) {
         to[a] = p->at[a] + LIFT*d*p->normal[a];
         from_foot[a] = to[a] - e->foot[a];
@@ -68,29 +42,29 @@ static int is_hidden(const look *l, int k)
     return dot(from_foot, e->foot_normal) < -0.25*d && tobi_bvh_segment_hits(l->b->bvh, l->x, to);
 }
 
-static void drop_hidden(look *l)
+static void drop_hidden(const look *l, tobi_facing_points *q)
 {
     int kept = 0;
-    for (int k = 0; k < l->count; k++) {
-        if (is_hidden(l, k)) continue;
-        l->point[kept] = l->point[k];
-        l->square[kept] = l->square[k];
-        l->height[kept++] = l->height[k];
+    for (int k = 0; k < q->count; k++) {
+        if (is_hidden(l, q, k)) continue;
+        q->point[kept] = q->point[k];
+        q->square[kept] = q->square[k];
+        q->height[kept++] = q->height[k];
     }
-    l->count = kept;
+    q->count = kept;
 }
 
-static void sum_points(const look *l)
+static void sum_points(const look *l, const tobi_facing_points *q)
 {
     const tobi_body *b = l->b;
     const tobi_smoothing_constants *c = &l->s->smoothing;
     const double *g = l->gravity;
     tobi_boundary_link link = *l->link;
     tobi_boundary_entry e = *l->entry;
-    for (int i = 0; i < l->count; i++) {
-        const tobi_boundary_point *p = l->point[i];
+    for (int i = 0; i < q->count; i++) {
+        const tobi_boundary_point *p = q->point[i];
         const int32_t k = p->number;
-        const double *n = p->normal, *v = b->point_velocity[k], s = l->height[i], w = l->weight[i];
+        const double *n = p->normal, *v = b->point_velocity[k], s = q->height[i], w = q->weight[i];
         const double aw = p->area*w;
         __atomic_store_n(&b->wet[k], TOBI_WET, __ATOMIC_RELAXED);
         /* whole numbers: the same sum in any order */
@@ -101,9 +75,9 @@ static void sum_points(const look *l)
         double arm[3], gn = g[0]*n[0] + g[1]*n[1] + (c->dimension == 3 ? g[2]*n[2] : 0);
         for (int a = 0; a < 3; a++) arm[a] = p->at[a] + b->lower[a] - b->centre[a];
         for (int a = 0; a < 3; a++) {
-            int q = (a + 1)%3, r = (a + 2)%3;
+            const int u = (a + 1)%3, o = (a + 2)%3;
             link.gradient[a] -= aw*n[a];
-            link.torque_arm[a] -= aw*(arm[q]*n[r] - arm[r]*n[q]);
+            link.torque_arm[a] -= aw*(arm[u]*n[o] - arm[o]*n[u]);
             e.hydrostatic[a] -= aw*gn*(s + reach)*n[a];
         }
         e.wall_flux -= aw*dot(n, v);
@@ -119,15 +93,14 @@ static void sum_points(const look *l)
     *l->entry = e;
 }
 
-/* Adds what the listed points give, and empties the list. */
-static void add_points(look *l)
+static void add_points(void *user, tobi_facing_points *q)
 {
+    const look *l = user;
     const tobi_smoothing_constants *c = &l->s->smoothing;
-    drop_hidden(l);
-    tobi_smoothing_weigh(c->shape, c->dimension, c->h, l->count, l->square, l->weight);
-    for (int k = 0; k < l->count; k++) l->weight[k] = c->plane_scale*l->weight[k];
-    sum_points(l);
-    l->count = 0;
+    drop_hidden(l, q);
+    tobi_facing_weigh(q, c);
+    for (int k = 0; k < q->count; k++) q->weight[k] = c->plane_scale*q->weight[k];
+    sum_points(l, q);
 }
 
 /* The nearest place of the body; 0 if it is far. */
@@ -151,13 +124,11 @@ void tobi_boundary_look(const tobi_system *s, int32_t i, int body, tobi_boundary
     const tobi_boundary_links *n = &sph_of(s)->links;
     const tobi_double3 at = s->particles.position[i];
     look l;
-    tobi_point_run run[TOBI_POINT_RUNS];
     l.s = s;
     l.b = &s->sim->bodies[body];
     memcpy(l.x, &at, sizeof l.x);
     l.link = link;
     l.entry = entry;
-    l.count = 0;
     memset(entry, 0, sizeof *entry);
     *link = (tobi_boundary_link){.particle = i, .body = (int16_t)body};
     entry->triangle = -1;
@@ -166,12 +137,6 @@ void tobi_boundary_look(const tobi_system *s, int32_t i, int body, tobi_boundary
     if (!find_foot(&l)) return;
     link->distance = (float)fabs(entry->distance);
     sph_gravity_at(s, l.x, s->particles.fluid[i], l.gravity);
-    const int runs = tobi_boundary_runs(n, body, l.x, run);
-    for (int r = 0; r < runs; r++)
-        while (run[r].begin < run[r].end) {
-            run[r].begin = list_points(&l, run[r]);
-            if (l.count == MOST) add_points(&l);
-        }
-    add_points(&l);
+    tobi_boundary_take_facing(n, body, l.x, s->smoothing.h, add_points, &l);
     entry->share = fmin(entry->share, 0.98);
 }

@@ -3,6 +3,7 @@
    the points, 64 bytes each. */
 #include "sph/boundary.h"
 #include "sph/state.h"
+#include "geom/vec3.h"
 #include <math.h>
 #include <string.h>
 
@@ -120,6 +121,48 @@ int tobi_boundary_runs(const tobi_boundary_links *n, int64_t body, const double 
                 run[runs++] = (tobi_point_run){point + row[low[0]], point + row[high[0] + 1]};
         }
     return runs;
+}
+
+/* Lists points, without a branch, until there is no room; returns the first that was not looked at. */
+static const tobi_boundary_point *list_points(tobi_facing_points *l, const double at[3], double reach,
+                                              tobi_point_run run)
+{
+    const double x[3] = { at[0], at[1], at[2] }, reach2 = reach*reach;
+    int count = l->count;
+    const int64_t room = TOBI_FACING_MOST - count;
+    const tobi_boundary_point *end = run.end - run.begin > room ? run.begin + room : run.end;
+    for (const tobi_boundary_point *p = run.begin; p < end; p++) {
+        const double r[3] = { x[0] - p->at[0], x[1] - p->at[1], x[2] - p->at[2] };
+        const double square = vec3_dot(r, r), height = vec3_dot(r, p->normal);
+        l->point[count] = p;
+        l->square[count] = square;
+        l->height[count] = height;
+        count += (square < reach2) & (p->area > 0) & (height > 0);
+    }
+    l->count = count;
+    return end;
+}
+
+void tobi_boundary_take_facing(const tobi_boundary_links *n, int64_t body, const double x[3], double reach,
+                               void (*take)(void *user, tobi_facing_points *list), void *user)
+{
+    tobi_point_run run[TOBI_POINT_RUNS];
+    tobi_facing_points list;
+    const int runs = tobi_boundary_runs(n, body, x, run);
+    list.count = 0;
+    for (int r = 0; r < runs; r++)
+        while (run[r].begin < run[r].end) {
+            run[r].begin = list_points(&list, x, reach, run[r]);
+            if (list.count < TOBI_FACING_MOST) continue;
+            take(user, &list);
+            list.count = 0;
+        }
+    if (list.count > 0) take(user, &list);
+}
+
+void tobi_facing_weigh(tobi_facing_points *l, const tobi_smoothing_constants *c)
+{
+    tobi_smoothing_weigh(c->shape, c->dimension, c->h, l->count, l->square, l->weight);
 }
 
 tobi_point_run tobi_boundary_nearest_run(const tobi_boundary_links *n, int64_t body, const double x[3])

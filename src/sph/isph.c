@@ -121,6 +121,7 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     TOBI_TRY(isph_solver_bind(&m->solver, s, err));
     TOBI_TRY(isph_bodies_find_mirrors(&m->solver, s, err));
     TOBI_TRY(isph_forces_find_coupling(&m->solver, s, err));
+    tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
     bind_soft(s, &m->solver.view);
     sph_measure_density(s, &m->view, m->kernel, 0, clock);
     return TOBI_OK;

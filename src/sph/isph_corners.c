@@ -33,14 +33,6 @@ typedef struct corner_look {
     int32_t next;                    /* that point, -1: there is none                               */
 } corner_look;
 
-/* Whether a point faces the particle within reach. r: from it to the particle. */
-static int faces(const corner_look *l, int32_t k, double r[3])
-{
-    const double h = l->s->smoothing.h;
-    for (int a = 0; a < 3; a++) r[a] = a < l->s->box.dimension ? l->x[a] - l->b->point[k][a] : 0;
-    return l->b->area[k] > 0 && vec3_dot(r, r) < h*h && vec3_dot(r, l->b->normal[k]) > 0;
-}
-
 /* Whether a point is of a face that makes a concave corner with this one. */
 static int meets(const corner_look *l, const corner_face *f, int32_t k)
 {
@@ -51,16 +43,21 @@ static int meets(const corner_look *l, const corner_face *f, int32_t k)
            -vec3_dot(apart, n) >= least;
 }
 
-static int find_next(void *user, int32_t k)
+static int meets_all(const corner_look *l, int32_t k)
 {
-    corner_look *l = user;
-    double r[3];
-    if (!faces(l, k, r) || vec3_dot(r, r) >= l->nearest) return 0;
     for (int f = 0; f < l->faces; f++)
         if (!meets(l, &l->face[f], k)) return 0;
-    l->nearest = vec3_dot(r, r);
-    l->next = k;
-    return 0;
+    return 1;
+}
+
+static void find_next(void *user, tobi_facing_points *q)
+{
+    corner_look *l = user;
+    for (int i = 0; i < q->count; i++) {
+        if (q->square[i] >= l->nearest || !meets_all(l, q->point[i]->number)) continue;
+        l->nearest = q->square[i];
+        l->next = q->point[i]->number;
+    }
 }
 
 /* Mirrors a place of face f in another face, along f. */
@@ -91,23 +88,24 @@ static double weigh_point(const corner_look *l, int f, int32_t k)
     return sum;
 }
 
-static int add_point(void *user, int32_t k)
+static void add_point(corner_look *l, const tobi_boundary_point *p, double height, double weight)
 {
-    corner_look *l = user;
     const tobi_smoothing_constants *c = &l->s->smoothing;
-    const double *n = l->b->normal[k];
-    double r[3];
-    if (!faces(l, k, r)) return 0;
-    const double w = l->b->area[k]*c->plane_scale*
-                     tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(vec3_dot(r, r)));
-    const double at = vec3_dot(r, n)/c->h*TOBI_PLANE_SAMPLES, sigma = tobi_wall_table_at(c->plane.sigma, at);
+    const double w = p->area*c->plane_scale*weight;
+    const double at = height/c->h*TOBI_PLANE_SAMPLES, sigma = tobi_wall_table_at(c->plane.sigma, at);
     for (int f = 0; f < l->faces; f++) {
-        if (vec3_dot(n, l->face[f].normal) < ONE_FACE) continue;
-        for (int a = 0; a < 3; a++) l->face[f].sum[a] += w*n[a];
-        l->face[f].share += sigma > 0 ? l->b->area[k]*c->plane_scale*weigh_point(l, f, k)*
+        if (vec3_dot(p->normal, l->face[f].normal) < ONE_FACE) continue;
+        for (int a = 0; a < 3; a++) l->face[f].sum[a] += w*p->normal[a];
+        l->face[f].share += sigma > 0 ? p->area*c->plane_scale*weigh_point(l, f, p->number)*
                                         tobi_wall_table_at(c->plane.lambda, at)/sigma : 0;
     }
-    return 0;
+}
+
+static void add_points(void *user, tobi_facing_points *q)
+{
+    corner_look *l = user;
+    tobi_facing_weigh(q, &l->s->smoothing);
+    for (int i = 0; i < q->count; i++) add_point(l, q->point[i], q->height[i], q->weight[i]);
 }
 
 /* The next face, unless the body is in the way. */
@@ -116,7 +114,7 @@ static int look_for_face(corner_look *l, int body)
     double ahead[3];
     l->nearest = INFINITY;
     l->next = -1;
-    tobi_boundary_visit(&sph_of(l->s)->links, body, l->x, find_next, l);
+    tobi_boundary_take_facing(&sph_of(l->s)->links, body, l->x, l->s->smoothing.h, find_next, l);
     if (l->next < 0) return 0;
     corner_face *f = &l->face[l->faces];
     *f = (corner_face){ .point = l->next };
@@ -174,7 +172,7 @@ int isph_corner_find(const tobi_system *s, const tobi_boundary_link *link, const
     for (int a = 0; a < 3; a++) l.face[0].normal[a] = e->offset[a]/e->distance;
     while (l.faces < most && look_for_face(&l, link->body)) { }
     if (l.faces == 1) return 0;
-    tobi_boundary_visit(&sph_of(s)->links, link->body, l.x, add_point, &l);
+    tobi_boundary_take_facing(&sph_of(s)->links, link->body, l.x, s->smoothing.h, add_points, &l);
     for (int f = 1; f < l.faces; f++) found += make_plane(&l, &l.face[f], link->body, &more[found]);
     if (found > 0 && vec3_dot(l.face[0].sum, l.face[0].sum) > 0) {   /* its normal is of its own face alone */
         memcpy(first->normal, l.face[0].sum, sizeof first->normal);

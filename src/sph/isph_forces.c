@@ -23,61 +23,89 @@ typedef struct body_points {
 
 static const tobi_body *body_of(const body_points *q) { return &q->s->sim->bodies[q->body]; }
 
-/* What a particle at distance x from a point, which faces it, counts there; 0: nothing. */
-static double weigh(const body_points *q, int64_t point, const double x[3])
+/* Particles that a point faces within reach: so many at a time. */
+enum { MOST = 128 };
+typedef struct seen_particles {
+    int count;
+    double at[MOST][3];              /* m, from the point                                           */
+    double square[MOST], height[MOST], weight[MOST];
+} seen_particles;
+
+/* Lists particles, without a branch, until there is no room; returns the first that was not looked at. */
+static int64_t list_particles(const body_points *q, int64_t point, int64_t i, int64_t end, seen_particles *l)
+{
+    const tobi_body *b = body_of(q);
+    const double h2 = q->s->smoothing.h*q->s->smoothing.h;
+    const double from[3] = { b->point[point][0], b->point[point][1], b->point[point][2] },
+                 normal[3] = { b->normal[point][0], b->normal[point][1], b->normal[point][2] };
+    const int deep = q->v->dimension == 3;
+    int count = l->count;
+    if (end - i > MOST - count) end = i + MOST - count;
+    for (; i < end; i++) {
+        const tobi_double3 *at = &q->v->position[i];
+        double *x = l->at[count];
+        x[0] = at->x - from[0];
+        x[1] = at->y - from[1];
+        x[2] = deep ? at->z - from[2] : 0;
+        const double square = vec3_dot(x, x), height = vec3_dot(x, normal);
+        l->square[count] = square;
+        l->height[count] = height;
+        count += (height > 0) & (square < h2);
+    }
+    l->count = count;
+    return end;
+}
+
+/* Particles before the point, and the pressure that liquid at rest has there beyond theirs. Empties the
+   list. */
+static void add_particles(const body_points *q, const double pull[3], seen_particles *l, isph_point *sum)
 {
     const tobi_smoothing_constants *c = &q->s->smoothing;
-    const double r2 = vec3_dot(x, x);
-    if (!(vec3_dot(x, body_of(q)->normal[point]) > 0) || r2 >= c->h*c->h) return 0;
-    return q->scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(r2));
-}
-
-/* From a point to a place. */
-static void measure(const body_points *q, int64_t point, const tobi_double3 *at, double x[3])
-{
-    for (int a = 0; a < 3; a++) x[a] = a < q->v->dimension ? (&at->x)[a] - body_of(q)->point[point][a] : 0;
-}
-
-/* Particles before the point, and the pressure that liquid at rest has there beyond theirs. */
-static void add_cell(const body_points *q, int64_t k, int64_t cell, isph_point *sum)
-{
     const isph_view *v = q->v;
-    double more[3] = { 0 };
-    if (v->acceleration.acts) tobi_acceleration_at(&v->acceleration, body_of(q)->point[k], more);
-    for (int64_t i = q->s->cells.start[cell]; i < q->s->cells.start[cell + 1]; i++) {
-        double x[3];
-        measure(q, k, &v->position[i], x);
-        const double w = weigh(q, k, x);
+    tobi_smoothing_weigh(c->shape, c->dimension, c->h, l->count, l->square, l->weight);
+    for (int i = 0; i < l->count; i++) {
+        const double w = q->scale*l->weight[i];
         sum->weight += w;
-        sum->distance += w*vec3_dot(x, body_of(q)->normal[k]);
-        for (int a = 0; a < v->dimension; a++)
-            sum->hydrostatic -= w*v->density*(v->gravity[a] + more[a])*x[a];
+        sum->distance += w*l->height[i];
+        for (int a = 0; a < v->dimension; a++) sum->hydrostatic -= w*v->density*pull[a]*l->at[i][a];
     }
+    l->count = 0;
 }
 
-/* The cell at an offset from that of x; -1: there is none. */
-static int64_t find_cell(const tobi_cells *c, const double x[3], const int offset[3])
+/* Rows of the cells around x: *first to *end of the particles; 0: the row is outside. */
+static int find_row(const tobi_cells *c, const double x[3], int y, int z, int64_t *first, int64_t *end)
 {
-    int at[3];
-    for (int a = 0; a < 3; a++) {
-        at[a] = (int)floor(x[a]*c->inverse[a]) + offset[a];
-        if (at[a] < 0 || at[a] >= c->n[a]) return -1;
-    }
-    return tobi_cells_row(c, at[1], at[2]) + at[0];
+    const int at[3] = { (int)floor(x[0]*c->inverse[0]), (int)floor(x[1]*c->inverse[1]) + y,
+                        (int)floor(x[2]*c->inverse[2]) + z };
+    const int low = at[0] > 0 ? at[0] - 1 : 0, high = at[0] + 1 < c->n[0] ? at[0] + 1 : c->n[0] - 1;
+    if (at[1] < 0 || at[1] >= c->n[1] || at[2] < 0 || at[2] >= c->n[2] || low > high) return 0;
+    const int64_t row = tobi_cells_row(c, at[1], at[2]);
+    *first = c->start[row + low];
+    *end = c->start[row + high + 1];
+    return 1;
 }
 
 static isph_point sum_particles(const body_points *q, int64_t k)
 {
-    const int deep = q->v->dimension == 3;
-    double x[3] = { 0 };
+    const isph_view *v = q->v;
+    const int deep = v->dimension == 3;
+    double x[3] = { 0 }, pull[3] = { 0 };
     isph_point sum = { 0, 0, 0 };
-    for (int a = 0; a < q->v->dimension; a++) x[a] = body_of(q)->point[k][a];
+    seen_particles list;
+    list.count = 0;
+    for (int a = 0; a < v->dimension; a++) x[a] = body_of(q)->point[k][a];
+    if (v->acceleration.acts) tobi_acceleration_at(&v->acceleration, body_of(q)->point[k], pull);
+    for (int a = 0; a < 3; a++) pull[a] += v->gravity[a];
     for (int z = -deep; z <= deep; z++)
-        for (int y = -1; y <= 1; y++)
-            for (int o = -1; o <= 1; o++) {
-                const int64_t cell = find_cell(&q->s->cells, x, (int[3]){ o, y, z });
-                if (cell >= 0) add_cell(q, k, cell, &sum);
+        for (int y = -1; y <= 1; y++) {
+            int64_t i, end;
+            if (!find_row(&q->s->cells, x, y, z, &i, &end)) continue;
+            while (i < end) {
+                i = list_particles(q, k, i, end, &list);
+                if (list.count == MOST) add_particles(q, pull, &list, &sum);
             }
+        }
+    add_particles(q, pull, &list, &sum);
     return sum;
 }
 
@@ -124,17 +152,18 @@ static void weigh_points(const void *view, int64_t begin, int64_t end, double *t
 }
 
 /* A particle's look at the points of one body. */
-typedef struct coupling_sum { body_points q; const tobi_double3 *at; isph_coupling coupling; } coupling_sum;
+typedef struct coupling_sum { body_points q; isph_coupling coupling; } coupling_sum;
 
-static int add_coupling(void *user, int32_t k)
+static void add_coupling(void *user, tobi_facing_points *l)
 {
     coupling_sum *g = user;
     const tobi_body *b = body_of(&g->q);
-    double x[3];
-    measure(&g->q, k, g->at, x);
-    const double w = b->area[k] > 0 && g->q.point[k].weight < INFINITY ? weigh(&g->q, k, x) : 0;
-    if (w > 0) add_push(b, k, -b->area[k]*w/g->q.point[k].weight, g->coupling.f);
-    return 0;
+    tobi_facing_weigh(l, &g->q.s->smoothing);
+    for (int i = 0; i < l->count; i++) {
+        const int32_t k = l->point[i]->number;
+        const double w = g->q.scale*l->weight[i], all = g->q.point[k].weight;
+        if (w > 0 && all < INFINITY) add_push(b, k, -b->area[k]*w/all, g->coupling.f);
+    }
 }
 
 typedef struct coupling_view {
@@ -149,11 +178,12 @@ static void find_couplings(const void *view, int64_t begin, int64_t end, double 
     (void)totals;
     for (int64_t k = begin; k < end; k++) {
         const tobi_boundary_link *l = &u->n->link[k];
-        coupling_sum g = { .q = *u->q, .at = &u->q->v->position[l->particle] };
-        const double x[3] = { g.at->x, g.at->y, g.at->z };
+        const tobi_double3 *at = &u->q->v->position[l->particle];
+        const double x[3] = { at->x, at->y, at->z };
+        coupling_sum g = { .q = *u->q };
         g.q.body = l->body;
         g.q.point = u->m->point + u->n->bins[l->body].item;
-        tobi_boundary_visit(u->n, l->body, x, add_coupling, &g);
+        tobi_boundary_take_facing(u->n, l->body, x, g.q.s->smoothing.h, add_coupling, &g);
         u->m->coupling[k] = g.coupling;
     }
 }

@@ -67,7 +67,8 @@ static const tobi_param world_rows[] = {
       RANGE(1e-9, TOBI_SPEED_LIMIT), .unit = "m/s",
       .text = "automatic", .doc = "A particle faster than this stops the run as diverged." },
     { .key = "threads", INT, AT(tobi_world_def, threads), RANGE(0, 4096), .unit = "1",
-      .text = "all", .doc = "Processor cores to use; the result is the same for any number." },
+      .text = "all", .doc = "Processor cores to use, all: as OMP_NUM_THREADS says, or else those of the "
+             "machine; the result is the same for any number." },
     { 0 }
 };
 
