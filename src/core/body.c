@@ -450,8 +450,6 @@ void tobi_body_place_next(tobi_body *b)
 void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt)
 {
     b->rigid.is_corrected = 1;
-    memcpy(b->rigid.corrected, velocity, 3*sizeof *velocity);
-    memcpy(b->rigid.corrected + 3, spin, 3*sizeof *spin);
     tobi_rigid_drift_by(&b->rigid, velocity, spin, dt);
     tobi_body_place_next(b);
 }

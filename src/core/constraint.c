@@ -474,6 +474,7 @@ tobi_status tobi_constraints_close(tobi_constraints *c, tobi_body *bodies, doubl
                                    tobi_error *err)
 {
     tobi_constraint_row *row = c->row;
+    c->driven = 0;
     if (c->count == 0) return TOBI_OK;
     tobi_constraints_take_inverse(c, bodies);
     tobi_constraints_factor(c, bodies);
@@ -491,22 +492,6 @@ void tobi_constraints_drive(tobi_constraints *c, tobi_body *bodies, double dt)
     tobi_constraints_obey(c, bodies);
     close_gaps(c, bodies, dt, 1);
     tobi_constraints_count(c);
-}
-
-void tobi_constraints_settle(tobi_constraints *c, tobi_body *bodies, double dt)
-{
-    int any = 0;
-    for (int k = 0; k < c->slots; k++) {
-        const tobi_rigid *r = &bodies[c->body[k]].rigid;
-        any |= r->is_corrected;
-        memcpy(c->speed[k], r->velocity, sizeof r->velocity);
-        memcpy(c->speed[k] + 3, r->angular_velocity, sizeof r->angular_velocity);
-        if (r->is_corrected) memcpy(c->speed[k], r->corrected, sizeof r->corrected);
-    }
-    if (!any) return;
-    tobi_constraints_take_inverse(c, bodies);
-    tobi_constraints_factor(c, bodies);
-    tobi_constraints_drive(c, bodies, dt);
 }
 
 void tobi_constraints_hold(const tobi_constraints *c, tobi_body *bodies)

@@ -49,6 +49,8 @@ typedef struct tobi_constraints {
     double *factor;                      /* [rows][rows] of J W J^T, lower triangle                     */
     double *impulse, *change;            /* [rows] N s, N m s                                           */
     double reach;                        /* m, to compare gaps with                                     */
+    int driven;                          /* 1: a liquid has set the drift of this step, by
+                                            tobi_rigid.predicted                                        */
 } tobi_constraints;
 
 /* Takes constraints whose names, kinds, bodies, points and axes are given, over; then `at` is the list's. */
@@ -96,9 +98,17 @@ tobi_status tobi_constraints_close(tobi_constraints *c, tobi_body *bodies, doubl
 /* The same where a liquid lets them drift by velocities of its own, in `speed`, which then obey; after
    tobi_constraints_factor. */
 void tobi_constraints_drive(tobi_constraints *c, tobi_body *bodies, double dt);
-/* After the systems: where solids have corrected the drift of a joined body, all joined ones drift by their
-   velocities, closed. */
+
+/* constraint_press.c, after the liquid. The velocities of a joined body before a solid presses it, by what is
+   known so far, m/s, rad/s; 0: no joint holds it, and velocity stays as it is. */
+int tobi_constraints_expect(tobi_constraints *c, const tobi_body *bodies, int body, double dt,
+                            double velocity[6]);
+/* The block of P W of a body (R.25); W of one that no joint holds. */
+void tobi_constraints_inverse(tobi_constraints *c, const tobi_body *bodies, int body, double w[6][6]);
+/* After the systems: where solids have corrected the drift of a joined body, all joined ones drift by what is
+   known, closed. */
 void tobi_constraints_settle(tobi_constraints *c, tobi_body *bodies, double dt);
+
 /* What contact holds on one side of a joint drifts without the pull on the other side, too. */
 void tobi_constraints_hold(const tobi_constraints *c, tobi_body *bodies);
 /* Adds the impulses of the last projections to what the joints did in this step. */

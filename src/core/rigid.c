@@ -364,7 +364,7 @@ void tobi_rigid_drift_by(tobi_rigid *r, const double velocity[3], const double s
 void tobi_rigid_drift(tobi_rigid *r, double dt)
 {
     double keep = tobi_rigid_keep(r, dt);
-    r->is_corrected = 0;
+    r->is_corrected = r->is_clamped = 0;
     if (r->joint.kind) {
         tobi_joint_drift(r, dt);
         return;

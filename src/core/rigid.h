@@ -48,8 +48,7 @@ typedef struct tobi_rigid {
     double span;                     /* s, over which `impulse` is the mean force; 0 = the step         */
     double constraint[6];            /* N s, N m s about the centre: of joints to other bodies, where the
                                         step began; core/constraint.h                                   */
-    double corrected[6];             /* m/s, rad/s: of tobi_body_correct, if it was called in this step */
-    int is_corrected;
+    int is_corrected, is_clamped;    /* 1: by tobi_body_correct, a clamp in this step                   */
 
     /* Within the step of a liquid, sph/boundary.h: */
     double driven[6];                             /* m/s, rad/s: by tobi_body_set_velocity, last        */

@@ -223,11 +223,14 @@ static void predict(const tobi_rigid *r, const double inverse[6][6], double dt, 
 }
 
 /* V = V0 + M^-1 (sum of m G^T (v - aim) - sum of m G^T G V), eq. (6). */
-static void solve_body(mpm_clamp *c, int body, const tobi_body *b, double dt)
+static void solve_body(mpm_clamp *c, int body, tobi_simulation *sim, double dt)
 {
     double inverse[6][6], matrix[6][6] = {{0}}, vector[6] = {0}, a[6][6], *velocity = c->velocity[body];
-    tobi_contact_inverse(&b->rigid, inverse);
-    predict(&b->rigid, (const double (*)[6])inverse, dt, velocity);
+    tobi_rigid *r = &sim->bodies[body].rigid;
+    r->is_clamped = 1;
+    tobi_constraints_inverse(&sim->constraints, sim->bodies, body, inverse);
+    if (!tobi_constraints_expect(&sim->constraints, sim->bodies, body, dt, velocity))
+        predict(r, (const double (*)[6])inverse, dt, velocity);
     for (int64_t n = c->first[body]; n < c->first[body + 1]; n++) add_held(&c->held[n], matrix, vector);
     for (int i = 0; i < 6; i++) {
         for (int k = 0; k < 6; k++) a[i][k] = i == k;
@@ -294,7 +297,7 @@ tobi_status mpm_clamp_hold(mpm_clamp *c, tobi_system *s, const mpm_grid *g, cons
         TOBI_TRY(find_poses(s, b, &at, err));
         tobi_loop(tobi_team(&s->sim->exec, count, 1024), count, 0, look_at_all, &view);
         if (at.moves) {
-            solve_body(c, k, b, s->dt);
+            solve_body(c, k, s->sim, s->dt);
             tobi_body_correct(b, c->velocity[k], c->velocity[k] + 3, s->dt);
         }
         push(c, s, k, g);

@@ -194,25 +194,10 @@ static void sum_contacts(tobi_contacts *c, int width, double dt, double *total, 
         for (int n = 0; n < width; n++) total[n] += c->partial[q*SUMS + n];
 }
 
-/* M^-1 as a whole, joints included. */
-void tobi_contact_inverse(const tobi_rigid *r, double inverse[6][6])
-{
-    double shift[3], turn[3][3], joint[6];
-    tobi_rigid_inverse(r, shift, turn);
-    tobi_joint_freedom(r, joint);
-    for (int i = 0; i < 6; i++)
-        for (int k = 0; k < 6; k++) inverse[i][k] = joint[i]*joint[k];
-    for (int i = 0; i < 3; i++) {
-        inverse[i][i] += shift[i];
-        for (int k = 0; k < 3; k++) inverse[3 + i][3 + k] += turn[i][k];
-    }
-}
-
 /* The predicted velocities after the impulses of this sweep, solved with them: V = V0 + M^-1 (r - K V). */
-static void predict(tobi_contacts *c, const tobi_rigid *r, double dt, tobi_exec *x)
+static void predict(tobi_contacts *c, double dt, tobi_exec *x)
 {
-    double inverse[6][6], total[SUMS], a[6][6], b[6];
-    tobi_contact_inverse(r, inverse);
+    double total[SUMS], a[6][6], b[6], (*inverse)[6] = c->inverse;
     sum_contacts(c, SUMS, dt, total, x);
     memcpy(b, c->velocity, sizeof c->velocity);
     memcpy(b + 3, c->spin, sizeof c->spin);
@@ -259,7 +244,7 @@ double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_ste
     double velocity[3], spin[3], total[6];
     memcpy(velocity, c->velocity, sizeof velocity);
     memcpy(spin, c->spin, sizeof spin);
-    if (moves && !first) predict(c, r, step->dt, x);
+    if (moves && !first) predict(c, step->dt, x);
     const visiting view = { .c = c, .body = r, .dt = step->dt, .first = first, .moves = moves, .pace = pace };
     tobi_loop(x->threads, count_parts(c), 1, sweep_parts, &view);
     for (int64_t q = 0; q < count_parts(c); q++) {
@@ -269,8 +254,7 @@ double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_ste
     const double moved = most > 0 ? sqrt(most/larger(largest, 1e-300)) : 0;
     if (!moves) return moved;
     /* What the impulses really were. */
-    double inverse[6][6];
-    tobi_contact_inverse(r, inverse);
+    double (*inverse)[6] = c->inverse;
     sum_contacts(c, 6, step->dt, total, x);
     for (int a = 0; a < 3; a++) {
         c->velocity[a] = velocity[a] - vec3_dot(inverse[a], total) - vec3_dot(inverse[a] + 3, total + 3);

@@ -55,6 +55,7 @@ typedef struct tobi_contacts {
     double *partial;                 /* sums of parts of the list                                */
     int64_t chunk_room;
     double velocity[3], spin[3];     /* m/s, rad/s: of the present body, after the impulses      */
+    double inverse[6][6];            /* its M^-1, joints included: the caller's to set           */
 } tobi_contacts;
 
 /* What contacts have taken from the energy, J, and the work of the bodies on the material: with the
@@ -101,6 +102,5 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
    take other velocities from it than they gave, and momentum would be lost. */
 void tobi_contact_shift(tobi_contacts *c, tobi_particles *p);
 void tobi_contact_free(tobi_contacts *c);
-/* M^-1 of a body, joints to the domain included; and the 6x6 system a x = b, with x left in b. */
-void tobi_contact_inverse(const tobi_rigid *r, double inverse[6][6]);
+/* The 6x6 system a x = b, with x left in b. */
 void tobi_contact_eliminate(double a[6][6], double b[6]);

@@ -323,12 +323,24 @@ static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_g
     mpm_packs_visit(&t->packs, t->kernels->push, &v, team_of(t, x));
 }
 
+/* How the body answers, and with what velocities if joints hold it. */
+static void know_joints(tobi_contacts *c, tobi_system *s, const tobi_contact_step *step)
+{
+    tobi_simulation *sim = s->sim;
+    double velocity[6];
+    tobi_constraints_inverse(&sim->constraints, sim->bodies, step->body, c->inverse);
+    if (!tobi_constraints_expect(&sim->constraints, sim->bodies, step->body, step->dt, velocity)) return;
+    memcpy(c->velocity, velocity, sizeof c->velocity);
+    memcpy(c->spin, velocity + 3, sizeof c->spin);
+}
+
 static tobi_status touch_body(mpm_touch *t, tobi_system *s, tobi_body *b, const mpm_grid *g,
                               const mpm_view *v, const tobi_contact_step *step, tobi_error *err)
 {
     tobi_contacts *c = &t->contacts;
     TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->sim->exec, err));
     if (b->rigid.kind != TOBI_PRESCRIBED) mpm_clamp_velocity(t->clamp, step->body, c->velocity, c->spin);
+    if (c->count > 0 || b->blade) know_joints(c, s, step);
     t->edge_first = c->count;
     t->ways = g->levels > 1 ? 1 << g->levels : 2;
     if (b->blade && b->edge_resistance > 0 && b->rigid.cut > 0)

@@ -75,9 +75,6 @@ void tobi_joint_list_check(const tobi_scene *scene, tobi_source *source)
 {
     static const tobi_place root = { 0 };
     tobi_place joints = { &root, "joints", 0 };
-    if (scene->joint_count && tobi_scene_has_both(scene))
-        tobi_source_mistake(source, &joints, "are not known yet where a liquid and solids of mlsmpm are in "
-                            "one scene");
     for (int i = 0; i < scene->joint_count && !tobi_report_full(source->report); i++) {
         const tobi_joint_def *joint = &scene->joints[i];
         tobi_place entry = { &joints, NULL, (size_t)i }, name = { &entry, "name", 0 };

@@ -207,6 +207,7 @@ static void correct_joined(tobi_system *s)
         memcpy(c->speed[k] + 3, b->rigid.predicted_spin, sizeof b->rigid.predicted_spin);
     }
     tobi_couple_join(s);
+    c->driven = 1;
     tobi_constraints_drive(c, s->sim->bodies, s->sim->dt);
     for (int k = 0; k < c->slots; k++)
         tobi_body_set_velocity(&s->sim->bodies[c->body[k]], c->speed[k], c->speed[k] + 3);

@@ -32,10 +32,6 @@ tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
             return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s' changes its shape and moves by forces, which "
                              "%s does not know; fluids of dfsph, isph and wcsph do", s->sim->bodies[k].name,
                              tobi_world_solids(w)->method->name);
-    if (w->sim.constraints.count && w->system_count > 1)
-        return tobi_fail(err, TOBI_UNSUPPORTED, "joint '%s': joints between bodies are not known yet where a "
-                         "liquid and solids of %s are in one world", w->sim.constraints.at[0].name,
-                         tobi_world_solids(w)->method->name);
     TOBI_TRY(tobi_constraints_start(&w->sim.constraints, w->sim.bodies, s->box.dimension, err));
     char *notes = malloc(NOTES);
     if (!notes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for notes");

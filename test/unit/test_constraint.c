@@ -506,27 +506,6 @@ static void wrong_joints_are_refused(void **state)
     tobi_world_destroy(world);
 }
 
-static void liquid_and_solids_do_not_know_joints(void **state)
-{
-    (void)state;
-    tobi_error err;
-    tobi_world *world = make_world(3);
-    const tobi_joint_def d = { .name = "j", .kind = TOBI_BETWEEN_BALL, .body = "boat",
-                               .point = { 0.2, 0.2, 0.2 } };
-    tobi_fluid_def fluid = tobi_default_fluid_def();
-    tobi_solid_def solid = tobi_default_solid_def();
-    tobi_fill_def fill = tobi_default_fill_def();
-    fill.box_max[0] = fill.box_max[1] = 1, fill.box_max[2] = 0.1;
-    assert_int_equal(tobi_world_add_joint(world, &d, &err), TOBI_OK);
-    assert_int_equal(tobi_world_add_fluid(world, &fluid, &fill, 1, &err), TOBI_OK);
-    fill.box_min[0] = fill.box_min[1] = 0.8, fill.box_min[2] = 0.2, fill.box_max[2] = 0.4;
-    if (tobi_world_add_solid(world, &solid, &fill, 1, &err) != TOBI_OK) fail_msg("%s", err.text);
-    assert_int_equal(tobi_world_start(world, &err), TOBI_UNSUPPORTED);
-    assert_non_null(strstr(err.text, "joint 'j': joints between bodies are not known yet where a liquid and "
-                                     "solids of mlsmpm are in one world"));
-    tobi_world_destroy(world);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -541,8 +520,7 @@ int main(void)
         cmocka_unit_test(joined_bars_come_to_rest_on_the_floor),
         cmocka_unit_test(a_body_that_rests_carries_another),
         cmocka_unit_test(answers_to_forces_are_symmetric),
-        cmocka_unit_test(wrong_joints_are_refused),
-        cmocka_unit_test(liquid_and_solids_do_not_know_joints)
+        cmocka_unit_test(wrong_joints_are_refused)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

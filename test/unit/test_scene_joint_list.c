@@ -44,26 +44,10 @@ static const char *const expected[] = {
     "joints[4]: must have an axis",
 };
 
-static const char with_solids[] =
-    "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 0.1, \"end_time\": 1,"
-    "  \"fluids\": [ { \"name\": \"water\","
-    "    \"fill\": [ { \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 0.2] } } ] } ],"
-    "  \"solids\": [ { \"name\": \"jelly\", \"youngs_modulus\": 1e5,"
-    "    \"fill\": [ { \"box\": { \"min\": [0, 0, 0.2], \"max\": [1, 1, 0.5] } } ] } ],"
-    "  \"bodies\": [ { \"name\": \"boat\", \"box\": { \"min\": [0.4, 0, 0.6], \"max\": [1, 1, 1] },"
-    "    \"dynamics\": \"free\" } ],"
-    "  \"joints\": [ { \"name\": \"a\", \"kind\": \"ball\", \"body\": \"boat\","
-    "    \"point\": [0.4, 0, 1] } ] }";
-
-static const char *const both[] = {
-    "joints: are not known yet where a liquid and solids of mlsmpm are in one scene",
-};
-
 static void every_mistake_is_told(void **state)
 {
     (void)state;
     expect_mistakes(text, expected, sizeof expected/sizeof *expected);
-    expect_mistakes(with_solids, both, 1);
 }
 
 int main(void)
