@@ -2,6 +2,7 @@
    places. Drawback: types of the table are all that JSON can say. */
 #define _GNU_SOURCE 1
 #include "scene/bind.h"
+#include "scene/describe.h"
 #include "scene/spelling.h"
 #include "tobiuo/scene.h"
 #include "base/param.h"
@@ -402,7 +403,7 @@ static size_t list_keys(const pass *p, const char *prefix, char (*keys)[48])
 
 static void report_unknown(const pass *p, const char *prefix, const tobi_place *place)
 {
-    char keys[CANDIDATES][48], all[1024] = "";
+    char keys[CANDIDATES][48], all[1024] = "", owners[256];
     const char *list[CANDIDATES];
     if (tobi_report_pass(p->binder->source->report)) return;
     size_t count = list_keys(p, prefix, keys), used = 0;
@@ -415,7 +416,9 @@ static void report_unknown(const pass *p, const char *prefix, const tobi_place *
     }
     for (size_t i = 0; i < count && used < sizeof all; i++)
         used += (size_t)snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "", keys[i]);
-    tobi_source_mistake_at_key(p->binder->source, place, "unknown key; allowed here: %s", all);
+    const int owned = tobi_describe_owners(place->key, owners, sizeof owners) > 0;
+    tobi_source_mistake_at_key(p->binder->source, place, "unknown key; %s%s%sallowed here: %s",
+                               owned ? "it belongs to " : "", owned ? owners : "", owned ? "; " : "", all);
 }
 
 static void bind_row(pass *p, const tobi_param *row, json_t *value, const tobi_place *place)

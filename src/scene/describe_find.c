@@ -74,6 +74,42 @@ int tobi_describe_find(FILE *out, const char *word)
     return found || !tobi_spelling_other(word, other) ? found : find_word(out, other);
 }
 
+/* --- where a key belongs ------------------------------------------------------------------ */
+
+/* "domain.walls" of "domain.walls.x[0]" and "walls"; 0 if the key has no such word. */
+static int find_path(const char *key, const char *word, char *path, size_t size)
+{
+    const size_t length = strlen(word);
+    for (const char *p = key; length > 0 && (p = strstr(p, word)); p++)
+        if ((p == key || p[-1] == '.') && ends_word(p[length])) {
+            snprintf(path, size, "%.*s", (int)(p - key) + (int)length, key);
+            return 1;
+        }
+    return 0;
+}
+
+int tobi_describe_owners(const char *word, char *text, size_t size)
+{
+    enum { MOST = 3 };
+    const tobi_param_table *table;
+    int found = 0;
+    size_t used = 0;
+    *text = '\0';
+    for (int i = 0; (table = tobi_describe_table_at(i)); i++) {
+        const char *owner = strcmp(table->name, "world") == 0 ? "the top level" : table->name;
+        char path[160], last[160] = "";
+        for (const tobi_param *row = table->rows; row->key; row++) {
+            if (!find_path(row->key, word, path, sizeof path) || strcmp(path, last) == 0) continue;
+            if (++found > MOST) return 0;
+            strcpy(last, path);
+            used += (size_t)snprintf(text + used, size - used, "%s%s (%s)", found > 1 ? ", " : "", owner,
+                                     path);
+            if (used >= size) return 0;
+        }
+    }
+    return found;
+}
+
 /* --- did you mean ------------------------------------------------------------------------- */
 
 typedef struct words { char *text; size_t size; FILE *out; int count; } words;

@@ -1,5 +1,6 @@
 /* The nearest known word by the number of edits, swaps included: one edit, and one more for every four
-   letters. Drawback: words of more than 40 letters get no suggestion. */
+   letters. Or else the only one that the word is the beginning of. Drawback: words of more than 40 letters
+   get no suggestion. */
 #include "tobiuo/scene.h"
 #include <ctype.h>
 #include <string.h>
@@ -30,6 +31,20 @@ static int measure_distance(const char *a, const char *b)
     return row[n%3][m];
 }
 
+/* "young" for youngs_modulus; NULL if several begin so. */
+static const char *find_longer(const char *word, int length, const char *const *candidates, size_t count)
+{
+    const char *found = NULL;
+    for (size_t i = 0; length >= 3 && i < count; i++) {
+        int k = 0;
+        while (k < length && fold(word[k]) == fold(candidates[i][k])) k++;
+        if (k < length) continue;
+        if (found) return NULL;
+        found = candidates[i];
+    }
+    return found;
+}
+
 const char *tobi_suggest(const char *word, const char *const *candidates, size_t count)
 {
     const char *best = NULL;
@@ -43,5 +58,5 @@ const char *tobi_suggest(const char *word, const char *const *candidates, size_t
         best = candidates[i];
         limit = distance - 1;
     }
-    return best;
+    return best ? best : find_longer(word, length, candidates, count);
 }

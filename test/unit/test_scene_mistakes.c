@@ -1,5 +1,4 @@
-/* Bad scenes: every class of mistake with its place, all at once, and input made to break the
- * reader. */
+/* Bad scenes: every class of mistake with its place, all at once, and input made to break the reader. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,8 +25,7 @@ static tobi_report *fail_text(const char *text, size_t size, const char *const *
     return report;
 }
 
-/* Checks the lines of a report in order: each must begin with the first and contain the second
- * text. */
+/* Checks the lines of a report in order: each must begin with the first and contain the second text. */
 typedef struct expected { const char *begin, *contains; } expected;
 
 static void check_report(const char *text, const char *const *overrides, const expected *lines,
@@ -86,6 +84,11 @@ static void unknown_keys(void **state)
     CHECK(make(spacing, box, ",\"dfsph\": { \"suport\": 3 }, \"domain.min\": 3"),
           { "s.json:6:13: dfsph.suport: ", "did you mean \"support\"" },
           { "s.json:6:28: domain.min: ", "unknown key" });
+    CHECK(make("\"spacing\": 0.1, \"walls\": 1, \"interv\": 1, \"interval\": 1, \"refer\": [],", box, ""),
+          { "s.json:2:17: walls: ", "unknown key; it belongs to the top level (domain.walls); allowed" },
+          { "s.json:2:29: interv: ", "unknown key; allowed" },
+          { "s.json:2:42: interval: ", "it belongs to output (interval); allowed here: method" },
+          { "s.json:2:57: refer: ", "did you mean \"references\"" });
 }
 
 static void wrong_types(void **state)
@@ -558,8 +561,7 @@ static void files_that_are_none(void **state)
     tobi_scene *scene;
     tobi_report *report;
     tobi_error err = { 0 };
-    assert_int_equal(tobi_scene_load("no/such/scene.json", NULL, &scene, &report, &err),
-                     TOBI_NOT_FOUND);
+    assert_int_equal(tobi_scene_load("no/such/scene.json", NULL, &scene, &report, &err), TOBI_NOT_FOUND);
     assert_non_null(strstr(err.text, "no/such/scene.json"));
     assert_null(scene);
     assert_null(report);
