@@ -21,6 +21,11 @@ static const float liquids[][3] = {
     { 0.10f, 0.40f, 0.50f }, { 0.90f, 0.62f, 0.12f }, { 0.30f, 0.62f, 0.25f }, { 0.75f, 0.25f, 0.30f },
 };
 
+/* Of solids without one beside liquids, by their number; alone they are blue. */
+static const float solids[][3] = {
+    { 0.86f, 0.66f, 0.40f }, { 0.78f, 0.38f, 0.36f }, { 0.55f, 0.68f, 0.40f }, { 0.60f, 0.50f, 0.72f },
+};
+
 static void mix(float color[3], const float with[3], float share)
 {
     for (int k = 0; k < 3; k++) color[k] += share*(with[k] - color[k]);
@@ -31,13 +36,37 @@ static void set_color(const double *color, const float otherwise[3], float out[3
     for (int k = 0; k < 3; k++) out[k] = color[0] < 0 ? otherwise[k] : (float)(color[k]/255.0);
 }
 
-/* Without a core of its own, a cut face is paler than its material, or darker where that is pale. */
-static void find_color(const tobi_material_look *look, int kind, int part, int tint, float out[3])
+static int has_liquid(const tobi_looks *s)
 {
-    static const float white[3] = { 1, 1, 1 }, black[3] = { 0, 0, 0 }, solid[3] = { 0.04f, 0.36f, 0.70f };
+    for (int m = 0; m < s->material_count; m++)
+        if (s->materials[m].liquid) return 1;
+    return 0;
+}
+
+/* How many kinds of liquid, or how many solids, there are before a material. */
+static int count_kinds(const tobi_looks *s, int material)
+{
+    const tobi_material_look *look = &s->materials[material];
+    int kind = 0;
+    for (int k = 0; k < (look->liquid ? look->kind : material); k++)
+        kind += s->materials[k].liquid == look->liquid && (!look->liquid || s->materials[k].kind == k);
+    return kind;
+}
+
+static const float *find_default(const tobi_looks *s, int material)
+{
+    static const float alone[3] = { 0.04f, 0.36f, 0.70f };
+    if (s->materials[material].liquid) return liquids[count_kinds(s, material)%4];
+    return has_liquid(s) ? solids[count_kinds(s, material)%4] : alone;
+}
+
+/* Without a core of its own, a cut face is paler than its material, or darker where that is pale. */
+static void find_color(const tobi_looks *s, int material, int part, int tint, float out[3])
+{
+    static const float white[3] = { 1, 1, 1 }, black[3] = { 0, 0, 0 };
+    const tobi_material_look *look = &s->materials[material];
     const int cored = look->core_color[0] >= 0;
-    set_color(part != SKIN && cored ? look->core_color : look->color, look->liquid ? liquids[kind%4] : solid,
-              out);
+    set_color(part != SKIN && cored ? look->core_color : look->color, find_default(s, material), out);
     const int pale = out[0] + out[1] + out[2] > 2;
     if (part == FACE && !cored) mix(out, pale ? black : white, 0.4f);
     if (tint > 0) mix(out, tints[tint - 1], 0.3f);
@@ -114,14 +143,6 @@ static tobi_status choose_tints(tobi_drawing *d, const tobi_moment_field *id, to
     return TOBI_OK;
 }
 
-/* How many kinds of liquid there are before a material. */
-static int count_kinds(const tobi_looks *s, const tobi_material_look *look)
-{
-    int kind = 0;
-    for (int k = 0; k < look->kind; k++) kind += s->materials[k].liquid && s->materials[k].kind == k;
-    return kind;
-}
-
 void tobi_looks_color(const tobi_looks *looks, int material, int part, float color[4])
 {
     static const float plain[4] = { 0.5f, 0.5f, 0.5f, 1 };
@@ -129,25 +150,25 @@ void tobi_looks_color(const tobi_looks *looks, int material, int part, float col
     memcpy(color, plain, sizeof plain);
     if (material < 0 || material >= looks->material_count) return;
     const tobi_material_look *look = &looks->materials[material];
-    find_color(look, count_kinds(looks, look), part < SKIN || part >= PARTS ? SKIN : part, 0, color);
+    find_color(looks, material, part < SKIN || part >= PARTS ? SKIN : part, 0, color);
     if (look->liquid) color[3] = share_of_liquid;
 }
 
 tobi_status tobi_drawing_make_palette(tobi_drawing *d, const tobi_moment_field *id, tobi_error *err)
 {
     const tobi_looks *s = d->looks;
-    int kinds = 0, colored = 0;
+    int kinds = 0, colored = 0, any_solid = 0;
     d->colors = s->material_count*PARTS*TINTS;
     d->palette = malloc(((size_t)d->colors + 1)*sizeof *d->palette);
     if (!d->palette) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     for (int m = 0; m < s->material_count; m++) {
         const tobi_material_look *look = &s->materials[m];
-        const int kind = count_kinds(s, look);
-        if (look->liquid && kind + 1 > kinds) kinds = kind + 1;
+        if (look->liquid && count_kinds(s, m) + 1 > kinds) kinds = count_kinds(s, m) + 1;
+        any_solid |= !look->liquid;
         colored |= look->color[0] >= 0 || look->core_color[0] >= 0 || look->skin.image;
         for (int c = 0; c < PARTS*TINTS; c++)
-            find_color(look, kind, c%PARTS, c/PARTS, d->palette[m*PARTS*TINTS + c]);
+            find_color(s, m, c%PARTS, c/PARTS, d->palette[m*PARTS*TINTS + c]);
     }
-    d->has_palette = (colored || kinds > 1) && !d->view->field && !d->view->look;
+    d->has_palette = (colored || kinds + any_solid > 1) && !d->view->field && !d->view->look;
     return d->has_palette && d->piece ? choose_tints(d, id, err) : TOBI_OK;
 }

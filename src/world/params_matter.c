@@ -146,8 +146,8 @@ static const tobi_param solid_rows[] = {
     { .key = "seeding", CHOICE("regular|blue-noise", 2), AT(tobi_solid_def, seeding),
       .doc = "Whether its particles start on a lattice, or scattered at even distances." },
     { .key = "color", COLOR, AT(tobi_solid_def, color), .text = "speed",
-      .doc = "Colour in pictures, red, green and blue; speed shows how fast the solid is. Pieces that a "
-             "blade or a crack has parted are tinted, faces of cuts paler." },
+      .doc = "Colour in pictures, red, green and blue; speed shows how fast the solid is, if no liquid "
+             "is in the scene. Pieces that a blade or a crack has parted are tinted, faces of cuts paler." },
     { .key = "core_color", COLOR, AT(tobi_solid_def, core_color), .text = "color",
       .doc = "Colour in pictures of what lay deeper than 1.75 spacings below the surface of its region "
              "at the start, and of the faces of cuts: an apple is red outside and cream where it is cut." },

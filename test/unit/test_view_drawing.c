@@ -66,6 +66,27 @@ static void materials_have_looks(void **state)
     tobi_drawing_free(NULL);
 }
 
+/* Neither has a colour: a solid beside a liquid must not look like it, a solid alone shows its speed. */
+static void solids_beside_liquids_have_colors(void **state)
+{
+    (void)state;
+    tobi_material_look two[2] = { LOOK(.color = { -1, -1, -1 }, .visible = 1, .liquid = 1),
+                                  LOOK(.color = { -1, -1, -1 }, .visible = 1) };
+    const tobi_view_def view = plain_view();
+    const tobi_looks before = looks;
+    for (int count = 2; count > 0; count--) {
+        looks.material_count = count;
+        looks.materials = two + 2 - count;
+        tobi_drawing *d = make(&view);
+        const tobi_picture *p = tobi_drawing_picture(d);
+        assert_int_equal(p->label == NULL, count == 2);
+        for (int k = 0; k < 3 && count == 2; k++)
+            assert_true(p->palette[(int)p->values[0]][k] != p->palette[(int)p->values[1]][k]);
+        tobi_drawing_free(d);
+    }
+    looks = before;
+}
+
 static void bodies_are_found_by_name(void **state)
 {
     (void)state;
@@ -134,7 +155,8 @@ static void wrong_calls_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(materials_have_looks), cmocka_unit_test(bodies_are_found_by_name),
+        cmocka_unit_test(materials_have_looks),
+        cmocka_unit_test(solids_beside_liquids_have_colors), cmocka_unit_test(bodies_are_found_by_name),
         cmocka_unit_test(tracks_are_read), cmocka_unit_test(wrong_calls_are_refused)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
