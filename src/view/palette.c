@@ -21,9 +21,9 @@ static const float liquids[][3] = {
     { 0.10f, 0.40f, 0.50f }, { 0.90f, 0.62f, 0.12f }, { 0.30f, 0.62f, 0.25f }, { 0.75f, 0.25f, 0.30f },
 };
 
-/* Of solids without one beside liquids, by their number; alone they are blue. */
+/* Of solids without one beside liquids, by their number; alone they are blue. Bodies have others. */
 static const float solids[][3] = {
-    { 0.86f, 0.66f, 0.40f }, { 0.78f, 0.38f, 0.36f }, { 0.55f, 0.68f, 0.40f }, { 0.60f, 0.50f, 0.72f },
+    { 0.92f, 0.82f, 0.50f }, { 0.56f, 0.43f, 0.35f }, { 0.88f, 0.62f, 0.68f }, { 0.66f, 0.74f, 0.62f },
 };
 
 static void mix(float color[3], const float with[3], float share)
