@@ -38,6 +38,9 @@ static const double PULL_TOLERANCE = 1e-3;
    Less lets particles crowd; more makes their lattice stiff. */
 static const double BASE = 0.25;
 
+/* Share of the density error in an outlet's buffer that its positions give way to in a step. */
+static const float BUFFER_RELAXATION = 0.1f;
+
 /* Spacings: the shortest support at which particle shifting closes cavities instead of stirring. */
 static const double SHIFTING_SUPPORT = 2.5;
 
@@ -359,6 +362,8 @@ static void shift_positions(tobi_system *s, dfsph *m)
     double d = s->smoothing.spacing;
     double strength = m->memory.vessel == SPH_VESSEL_FULL && reaches_far(s) ? m->def.shifting : 0;
     m->view.background = (float)(strength*d*d*s->fluid[0].density/(2*s->dt*s->dt));
+    m->view.relaxation = BUFFER_RELAXATION;
+    if (sph_has_openings(s)) launch(s, m, m->kernel->sph_relax_outlet, NULL);
     launch(s, m, m->kernel->sph_shift, NULL);
 }
 

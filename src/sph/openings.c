@@ -42,6 +42,7 @@ static around look_around(const tobi_system *s, int64_t i)
     const sph_fields *f = sph_fields_of(p);
     const tobi_smoothing_constants *c = &s->smoothing;
     const int32_t *j = s->cells.list + 8*(int64_t)s->cells.list_start[i];
+    const double base = tobi_reference_pressure(&sph_of(s)->reference, &p->position[i].x);
     around sum = { 0 };
     for (int k = 0; k < 8*s->cells.list_groups[i]; k++) {
         if (j[k] == i) continue;
@@ -60,6 +61,7 @@ static around look_around(const tobi_system *s, int64_t i)
         }
         sum.free += w;
         for (int a = 0; a < 3; a++) sum.velocity[a] += w*(&p->velocity[j[k]].x)[a];
+        still += tobi_reference_pressure(&sph_of(s)->reference, &p->position[j[k]].x) - base;
         sum.pressure += w*(f->pressure[j[k]] + still);
     }
     return sum;
@@ -96,7 +98,8 @@ static void extend_range(const void *view, int64_t begin, int64_t end)
     for (int64_t i = begin; i < end; i++) {
         const tobi_opening *o = opening_of(s, i);
         if (!o || !o->outlet) continue;
-        f->pressure[i] = s->cells.record[i].w = (float)find_pressure(s, o, i);
+        const double rest = tobi_reference_pressure(&sph_of(s)->reference, &s->particles.position[i].x);
+        f->pressure[i] = s->cells.record[i].w = (float)(find_pressure(s, o, i) - rest);
         for (int a = 0; a < 3; a++) (&f->held[i].x)[a] = (&s->particles.velocity[i].x)[a];
     }
 }
@@ -162,9 +165,12 @@ static void drive_range(const void *view, int64_t begin, int64_t end)
     for (int64_t i = begin; i < end; i++) {
         const tobi_opening *o = opening_of(s, i);
         if (!o) continue;
+        if (o->outlet) {
+            follow(s, o, i, none);
+            continue;
+        }
         f->accel[i] = (tobi_float4){ 0, 0, 0, 0 };
-        if (o->outlet) follow(s, o, i, none);
-        else s->particles.velocity[i] = (tobi_float4){ f->held[i].x, f->held[i].y, f->held[i].z, 0 };
+        s->particles.velocity[i] = (tobi_float4){ f->held[i].x, f->held[i].y, f->held[i].z, 0 };
     }
 }
 
@@ -192,4 +198,42 @@ void sph_openings_drive(tobi_system *s)
 {
     if (sph_has_openings(s) && sph_of(s)->marked)
         tobi_loop(s->sim->exec.threads, s->particles.count, 512, drive_range, s);
+}
+
+static void hide_range(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    for (int64_t i = begin; i < end; i++) {
+        const tobi_double3 *p = &s->particles.position[i];
+        const double x[3] = { p->x, p->y, p->z };
+        if (f->surface_depth[i] > 0 && tobi_opening_find(s->sim->openings, s->sim->opening_count, x) >= 0)
+            f->surface_depth[i] = 0;
+    }
+}
+
+void sph_openings_hide_surface(tobi_system *s)
+{
+    if (sph_has_openings(s)) tobi_loop(s->sim->exec.threads, s->particles.count, 0, hide_range, s);
+}
+
+static void start_range(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    for (int64_t i = begin; i < end; i++) {
+        double sum = 0;
+        int count = 0;
+        for (int k = 0; k < s->sim->opening_count; k++) {
+            if (s->sim->openings[k].gives != TOBI_GIVES_PRESSURE) continue;
+            sum += find_pressure(s, &s->sim->openings[k], i);
+            count++;
+        }
+        if (count > 0) f->pressure[i] = s->cells.record[i].w = (float)(sum/count);
+    }
+}
+
+void sph_openings_start(tobi_system *s)
+{
+    if (sph_has_openings(s)) tobi_loop(s->sim->exec.threads, s->particles.count, 0, start_range, s);
 }

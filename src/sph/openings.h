@@ -15,5 +15,9 @@ void sph_openings_continue(tobi_system *s, double share);
 /* After forces: gives inlets their velocities again, outlets that of the free liquid around or their own. */
 void sph_openings_hold(tobi_system *s);
 /* After pressure, before positions: the same of inlets; outlets get the mean velocity of the free liquid
-   around, inwards only where their pressure is given. No shift of either. */
+   around, inwards only where their pressure is given. No shift of inlets. */
 void sph_openings_drive(tobi_system *s);
+/* Ends of buffers are no free surface: takes them out of the depths from which its level is found. */
+void sph_openings_hide_surface(tobi_system *s);
+/* Before the first step of liquid without a free surface: it has the mean pressure that outlets give. */
+void sph_openings_start(tobi_system *s);

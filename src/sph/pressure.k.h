@@ -312,6 +312,21 @@ TOBI_FN void sph_center_pressure(const sph_view *v, int64_t i, double *totals)
     v->record[i].w = v->pressure[i];
 }
 
+/* One Jacobi step of the position equation, eq. (23): the potential of the shift. */
+TOBI_FN float sph_relax_value(const sph_view *v, int64_t i)
+{
+    float e = v->density[i] - 1;
+    e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : (e < -0.1f ? -0.1f : e);
+    return v->diagonal[i] > v->isolated ? v->relaxation*v->inverse_dt*v->inverse_dt*e/v->diagonal[i] : 0;
+}
+
+/* What an outlet's buffer, no unknown of the solve, adds to the shift: payload = its potential. */
+TOBI_FN void sph_relax_outlet(const sph_view *v, int64_t i, double *totals)
+{
+    (void)totals;
+    if (sph_held(v, i) && !sph_driven(v, i)) v->record[i].w = sph_relax_value(v, i);
+}
+
 /* The shift of positions over dt^2, eq. (12): a(phi) with phi the payload, a uniform background (particle
    shifting, Xu et al. 2009), and pairs nearer than the core pushed apart. */
 typedef struct sph_shift_acc { sph_pressure_accel_acc accel; lane x, y, z, cx, cy, cz; } sph_shift_acc;

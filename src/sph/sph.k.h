@@ -153,7 +153,7 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     totals[7] = depth > totals[7] ? depth : totals[7];
     float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/(fluid + share);
     v->mean_pressure[i] = mean;
-    if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);
+    if (share == 0 && !v->surface[i] && !sph_held(v, i)) v->pressure[i] = p + v->smooth*(mean - p);
     v->density[i] = rho;
     sph_matrix t = sph_make_tensor(v, i, a, share, sure);
     v->diagonal[i] = sph_diagonal(v, i, g, a, &t);

@@ -15,7 +15,7 @@ TOBI_FN void sph_rest(const sph_view *v, int64_t i, double *totals)
 }
 
 /* What the reference gains as its level moves and the particle sinks in it is no compression: the pressure
-   beside it loses that, eq. (21b). */
+   beside it loses that, eq. (21b); one that is given has none of it. */
 TOBI_FN void sph_carry(const sph_view *v, int64_t i, double *totals)
 {
     const tobi_reference *w = &v->reference;
@@ -25,7 +25,7 @@ TOBI_FN void sph_carry(const sph_view *v, int64_t i, double *totals)
     (void)totals;
     for (int c = 0; c < 3; c++) sink += (held*w->down[c] + rho*v->removed_gravity[c])*(&u.x)[c];
     double rise = tobi_reference_pressure(w, x) - tobi_reference_pressure(&v->reference_before, x);
-    v->pressure[i] -= (float)(rise + v->dt*sink);
+    if (!sph_held(v, i)) v->pressure[i] -= (float)(rise + v->dt*sink);
 }
 
 /* dp/dt = exponent (p + B) C v, eq. (21), which is the Tait equation carried along with the particle.
@@ -60,12 +60,9 @@ TOBI_FN void sph_tait_finish(const sph_view *v, int64_t i, sph_compression_acc *
     totals[6] = size > totals[6] ? size : totals[6];
 }
 
-/* One Jacobi step of the position equation, eq. (23): payload = the potential of the shift. */
+/* Payload = the potential of the shift, eq. (23); an inlet's particles have none. */
 TOBI_FN void sph_relax(const sph_view *v, int64_t i, double *totals)
 {
-    float e = v->density[i] - 1;
     (void)totals;
-    e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : (e < -0.1f ? -0.1f : e);
-    v->record[i].w = v->diagonal[i] > v->isolated && !sph_held(v, i)
-                         ? v->relaxation*v->inverse_dt*v->inverse_dt*e/v->diagonal[i] : 0;
+    v->record[i].w = sph_driven(v, i) ? 0 : sph_relax_value(v, i);
 }

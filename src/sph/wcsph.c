@@ -67,7 +67,6 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     m->def.still_water &= !s->sim->soft.solids;   /* the solids' points know nothing of it */
     m->sound = find_sound(s, &m->def);
     m->compliance = fmax(tobi_couple_compliance(s), sph_soft_compliance(s));
-    if (sph_has_openings(s)) m->def.still_water = m->rests = 0;  /* the level of the start is none for long */
     return TOBI_OK;
 }
 
@@ -116,6 +115,7 @@ static double find_surface(tobi_system *s)
     sph_state *state = sph_of(s);
     const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t k = 0; k < state->links.count; k++) f->surface_depth[state->links.link[k].particle] = 0;
+    sph_openings_hide_surface(s);
     return sph_reference_low(s);
 }
 
@@ -127,6 +127,7 @@ static void start_at_rest(tobi_system *s, wcsph *m)
     m->view.reference_before = sph_of(s)->reference;
     if (!m->def.still_water) m->view.reference.cover = INFINITY;
     launch(s, m, m->kernel->sph_rest, NULL);
+    if (m->rests && !(m->view.reference.push > 0)) sph_openings_start(s);
     if (!m->def.still_water) m->memory.level = 0;
 }
 

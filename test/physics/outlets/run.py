@@ -17,6 +17,8 @@ there the pressure along the pipe is 2 kPa, and it falls by 12 mu U/H^2 (Poiseui
 
 RHO, G, LONG, DEEP, LOWER = 1000, 9.81, 0.8, 0.2, 0.15
 WIDE, U, MU, GIVEN = 0.2, 0.5, 10, 2000
+# s: no multiple of the time in which a layer of particles goes by, which pressures of wcsph swing with.
+PIPE_OUTPUT = 0.0137
 
 
 def run_pool(method, layers, level, viscosity, end):
@@ -77,7 +79,7 @@ def pipe(method, across):
                "inlets": [{"name": "in", "centre": [0.1, WIDE/2], "normal": [1, 0], "width": WIDE, "speed": U,
                            "profile": "parabolic"}],
                "outlets": [{"name": "out", "centre": [0.9, WIDE/2], "normal": [1, 0], "width": WIDE, "pressure": GIVEN}],
-               "output": {"interval": 0.1, "fields": ["velocity", "pressure"], "surfaces": False}}
+               "output": {"interval": PIPE_OUTPUT, "fields": ["velocity", "pressure"], "surfaces": False}}
     if method == "wcsph":
         content["wcsph"] = {"stiffness": 14000}
     name = f"pipe_{method}_{across}"
