@@ -89,7 +89,7 @@ static void print_size(const tobi_scene *scene, const tobi_run_size *size)
 }
 
 /* The world takes some steps. They are often longer than what is guessed for the whole run: the truth lies
-   between. */
+   between. Where they are shorter (springs, viscosity, surface tension), they count. */
 static int print_time(const tobi_scene *scene, tobi_world *world, double step)
 {
     const double end = tobi_scene_world_def(scene)->end_time;
@@ -100,7 +100,9 @@ static int print_time(const tobi_scene *scene, tobi_world *world, double step)
     if (measure_steps(world, end, &steps, &wall, &taken, &err) != TOBI_OK)
         return complain("after %d steps: %s", steps, err.text);
     if (steps < 2) return 0;
-    if (step == 0) step = taken;
+    if (step > 0 && taken < 0.5*step)
+        printf("note             the first steps are %.3g s: about %.4g steps to %g s\n", taken, end/taken, end);
+    if (step == 0 || taken < step) step = taken;
     duration_text(wall * end / taken, least);
     duration_text(wall * end / step, most);
     const int differ = taken > 1.3 * step && strcmp(least, most) != 0;
