@@ -75,7 +75,7 @@ static void check_field(const tobi_scene *scene, tobi_source *source, const tobi
         size_t used = strlen(all);
         snprintf(all + used, sizeof all - used, "%s%s", used ? ", " : "", names[k]);
     }
-    const char *near = tobi_suggest(field, names, (size_t)count);
+    const char *near = strcmp(field, "speed") == 0 ? "velocity" : tobi_suggest(field, names, (size_t)count);
     if (near)
         tobi_source_mistake(source, place, "there is no field \"%s\"; did you mean \"%s\"?", field,
                             near);
