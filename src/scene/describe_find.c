@@ -12,12 +12,13 @@
 
 static int ends_word(char c) { return c == '\0' || c == '.' || c == '['; }
 
-/* Whether path has the words of `part` beside each other: "output.camera.angle" has "camera". */
-static int has_words(const char *path, const char *part)
+/* How long path is up to the end of the words of `part` in it, beside each other: "output.camera.angle" has
+   "camera"; 0: it has them not. */
+static int find_words(const char *path, const char *part)
 {
     const size_t length = strlen(part);
     for (const char *p = path; length > 0 && (p = strstr(p, part)); p++)
-        if ((p == path || p[-1] == '.') && ends_word(p[length])) return 1;
+        if ((p == path || p[-1] == '.') && ends_word(p[length])) return (int)(p - path) + (int)length;
     return 0;
 }
 
@@ -25,7 +26,7 @@ static int matches(const tobi_param_table *table, const char *key, const char *w
 {
     char path[160];
     snprintf(path, sizeof path, "%s.%s", table->name, key);
-    return has_words(path, word);
+    return find_words(path, word) > 0;
 }
 
 static int find_in_table(FILE *out, const tobi_param_table *table, const char *word, int found)
@@ -76,18 +77,6 @@ int tobi_describe_find(FILE *out, const char *word)
 
 /* --- where a key belongs ------------------------------------------------------------------ */
 
-/* "domain.walls" of "domain.walls.x[0]" and "walls"; 0 if the key has no such word. */
-static int find_path(const char *key, const char *word, char *path, size_t size)
-{
-    const size_t length = strlen(word);
-    for (const char *p = key; length > 0 && (p = strstr(p, word)); p++)
-        if ((p == key || p[-1] == '.') && ends_word(p[length])) {
-            snprintf(path, size, "%.*s", (int)(p - key) + (int)length, key);
-            return 1;
-        }
-    return 0;
-}
-
 int tobi_describe_owners(const char *word, char *text, size_t size)
 {
     enum { MOST = 3 };
@@ -99,7 +88,8 @@ int tobi_describe_owners(const char *word, char *text, size_t size)
         const char *owner = strcmp(table->name, "world") == 0 ? "the top level" : table->name;
         char path[160], last[160] = "";
         for (const tobi_param *row = table->rows; row->key; row++) {
-            if (!find_path(row->key, word, path, sizeof path) || strcmp(path, last) == 0) continue;
+            snprintf(path, sizeof path, "%.*s", find_words(row->key, word), row->key);
+            if (!*path || strcmp(path, last) == 0) continue;
             if (++found > MOST) return 0;
             strcpy(last, path);
             used += (size_t)snprintf(text + used, size - used, "%s%s (%s)", found > 1 ? ", " : "", owner,

@@ -37,6 +37,11 @@ expect 0 "draws" movie "100%d run" --out whole.png
 check "one that is missing is drawn" cmp -s "100%d run/frames/frame_000007.png" plain/frames/frame_000007.png
 rm -rf plain/fluid* plain/frames/frame_000010.png
 expect 0 "No such file" movie plain --out kept.png
+rm -rf plain/frames
+expect 1 "No such file" movie plain --out none.png
+check "without results and pictures there is no sheet" test ! -e none.png
+expect 0 "" run drop.json --out short --quiet --frames --until 0.001 --set output.interval=1
+rm -rf short/fluid* short/frames/frame_000001.png
 touch there.mp4
 expect 1 "there.mp4 exists; --force replaces it" movie "100%d run" --out there.mp4
 expect 1 "there.mp4 exists; --force replaces it" run drop.json --out again --quiet --movie there.mp4
@@ -61,6 +66,7 @@ print(seen, file=sys.stderr)
 sys.exit(int(seen[0].strip(",")) != frames or abs(float(seen[1]) - seconds) > 0.021)
 END
 }
+expect 1 "has one output only" movie short
 expect 0 "" movie "100%d run"
 check "11 pictures of 0.02 s make 0.22 s" is "100%d run/movie.mp4" 11 0.22
 expect 1 "exists; --force replaces it" movie "100%d run"
