@@ -79,6 +79,7 @@ typedef struct tile_kernels {
     tobi_range glass_tiles;
     tobi_range sum_nodes;        /* of isosurface.c                                                */
     tobi_range sum_colors;
+    tobi_range filter_rows;      /* of png.c                                                       */
 } tile_kernels;
 extern const tile_kernels tile_kernels_v2, tile_kernels_v3, tile_kernels_v4;
 
@@ -319,6 +320,14 @@ static inline bool view_is_shown(const tobi_picture *f, int64_t i)
 {
     return !f->clip || view_beyond(f, f->positions[i], 0.5*f->slice) <= 0;
 }
+
+/* What the filter of PNG needs: rows, each of which gets a byte in front. */
+typedef struct filtering {
+    const uint8_t *from;
+    uint8_t *to;
+    int64_t row;                 /* bytes                                                          */
+    int     channels;
+} filtering;
 
 /* png.c: width x height x channels bytes, sRGB; of 4 channels the last is alpha. */
 void view_encode_colors(const canvas *c, int channels, unsigned char *bytes);

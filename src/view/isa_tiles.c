@@ -3,6 +3,7 @@
    surface, else for each surface. Drawback: light is computed pixel by pixel, not eight at once. */
 #include "view/glass.h"
 #include "view/image.h"
+#include <stdlib.h>
 #include <string.h>
 
 #define JOIN_(a, b) a##_##b
@@ -531,6 +532,38 @@ static void sum_colors(const void *view, int64_t begin, int64_t end)
         if (v->colored[b] >= 0) sum_block_colors(v, b);
 }
 
+/* Each byte less the one of three neighbours, left, above and between, that is nearest to left + above -
+   between (Paeth 1991). */
+static void filter_row(const uint8_t *from, const uint8_t *before, int64_t row, int channels, uint8_t *to)
+{
+    *to++ = 4;
+    for (int k = 0; k < channels; k++) to[k] = (uint8_t)(from[k] - before[k]);
+    TOBI_SIMD
+    for (int64_t k = channels; k < row; k++) {
+        const int16_t left = from[k - channels], up = before[k], corner = before[k - channels];
+        const int16_t a = (int16_t)(up - corner), b = (int16_t)(left - corner), c = (int16_t)(a + b);
+        const int16_t pa = (int16_t)abs(a), pb = (int16_t)abs(b), pc = (int16_t)abs(c);
+        const int16_t other = pb <= pc ? up : corner, near = (pa <= pb) & (pa <= pc) ? left : other;
+        to[k] = (uint8_t)(from[k] - near);
+    }
+}
+
+static void filter_rows(const void *view, int64_t begin, int64_t end)
+{
+    const filtering *v = view;
+    for (int64_t y = begin; y < end; y++) {
+        const uint8_t *from = v->from + y*v->row;
+        uint8_t *to = v->to + y*(v->row + 1);
+        if (y > 0) {
+            filter_row(from, from - v->row, v->row, v->channels, to);
+            continue;
+        }
+        *to++ = 1;      /* less the one on the left */
+        memcpy(to, from, (size_t)v->channels);
+        for (int64_t k = v->channels; k < v->row; k++) to[k] = (uint8_t)(from[k] - from[k - v->channels]);
+    }
+}
+
 const tile_kernels JOIN(tile_kernels, TOBI_ISA) = { depth_tiles, opaque_tiles, water_tiles, drop_tiles,
                                                     glass_tiles, sum_nodes,
-                                                    sum_colors };
+                                                    sum_colors, filter_rows };

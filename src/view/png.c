@@ -1,53 +1,15 @@
-/* Converts to sRGB and writes by libpng, whose errors jump. Drawback: compression is on one thread. */
+/* Converts to sRGB and writes PNG (ISO/IEC 15948) of one filter, Paeth's, whose zeros and bytes deflate.c
+   compresses: a third of the time of libpng and zlib, and smaller files (decisions/0092). Drawback:
+   compression is on one thread. */
 #define _GNU_SOURCE 1
 #include "view/draw.h"
+#include "view/deflate.h"
 #include "base/file.h"
-#include <png.h>
-#include <setjmp.h>
 #include <stdlib.h>
+#include <string.h>
 #include <zlib.h>
 
 enum { CURVE = 4096 };
-
-static void put_bytes(png_structp png, png_bytep data, png_size_t bytes)
-{
-    tobi_file_write(png_get_io_ptr(png), data, bytes);
-}
-
-static void put_nothing(png_structp png) { (void)png; }
-
-static void stay_silent(png_structp png, png_const_charp text) { (void)png, (void)text; }
-
-static void leave(png_structp png, png_const_charp text)
-{
-    (void)text;
-    png_longjmp(png, 1);
-}
-
-/* libpng leaves by longjmp, so nothing here may live in a register across it. Of one filter and runs
-   alone: about as small as at libpng's own choice, and twice as quick. */
-static bool encode(tobi_file *file, int width, int height, int channels, unsigned char *bytes)
-{
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, leave, stay_silent);
-    png_infop info = png ? png_create_info_struct(png) : NULL;
-    if (!info || setjmp(png_jmpbuf(png))) {
-        png_destroy_write_struct(&png, &info);
-        return false;
-    }
-    png_set_write_fn(png, file, put_bytes, put_nothing);
-    png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8,
-                 channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-    png_set_compression_level(png, 1);
-    png_set_compression_strategy(png, Z_RLE);
-    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-    png_write_info(png, info);
-    for (int y = 0; y < height; y++) png_write_row(png, bytes + (size_t)y*(size_t)width*(size_t)channels);
-    png_write_end(png, NULL);
-    png_destroy_write_struct(&png, &info);
-    return true;
-}
 
 typedef struct encoding {
     const canvas *c;
@@ -90,22 +52,83 @@ void view_encode_colors(const canvas *c, int channels, unsigned char *bytes)
     tobi_loop(c->threads, c->height, 0, encode_rows, &e);
 }
 
+static void put_number(uint8_t to[4], uint32_t n)
+{
+    for (int k = 0; k < 4; k++) to[k] = (uint8_t)(n >> (24 - 8*k));
+}
+
+/* A chunk: length, type, content, check sum of the latter two. */
+static void put_chunk(tobi_file *file, const char *type, const uint8_t *data, size_t bytes)
+{
+    uint8_t head[8], sum[4];
+    put_number(head, (uint32_t)bytes);
+    memcpy(head + 4, type, 4);
+    uLong check = crc32(0, head + 4, 4);
+    if (bytes > 0) check = crc32(check, data, (uInt)bytes);      /* without data it begins anew */
+    put_number(sum, (uint32_t)check);
+    tobi_file_write(file, head, sizeof head);
+    tobi_file_write(file, data, bytes);
+    tobi_file_write(file, sum, sizeof sum);
+}
+
+/* Room for compression. */
+typedef struct press {
+    deflater d;
+    uint8_t out[2 + DEFLATE_ROOM + 4];
+} press;
+
+/* The stream of zlib (RFC 1950): two bytes, blocks, a check sum of all before compression. Each block is a
+   chunk. */
+static void put_image(tobi_file *file, press *p, const uint8_t *filtered, size_t bytes)
+{
+    static const uint8_t head[2] = { 0x78, 0x01 };
+    uLong check = adler32(0, NULL, 0);
+    for (size_t at = 0; at < bytes; at += DEFLATE_BLOCK) {
+        const bool last = bytes - at <= DEFLATE_BLOCK;
+        const size_t count = last ? bytes - at : DEFLATE_BLOCK;
+        size_t written = 0;
+        if (at == 0) memcpy(p->out, head, written = sizeof head);
+        written += view_deflate(&p->d, filtered + at, count, last, p->out + written);
+        check = adler32(check, filtered + at, (uInt)count);
+        if (last) put_number(p->out + written, (uint32_t)check), written += 4;
+        put_chunk(file, "IDAT", p->out, written);
+    }
+}
+
+static void put_picture(tobi_file *file, press *p, const canvas *c, int channels, const uint8_t *filtered)
+{
+    static const uint8_t signature[8] = { 0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n' }, perceptual[1];
+    uint8_t head[13] = { [8] = 8, [9] = channels == 4 ? 6 : 2 };      /* bits, with or without alpha */
+    put_number(head, (uint32_t)c->width);
+    put_number(head + 4, (uint32_t)c->height);
+    tobi_file_write(file, signature, sizeof signature);
+    put_chunk(file, "IHDR", head, sizeof head);
+    put_chunk(file, "sRGB", perceptual, sizeof perceptual);
+    put_image(file, p, filtered, ((size_t)c->width*(size_t)channels + 1)*(size_t)c->height);
+    put_chunk(file, "IEND", NULL, 0);
+}
+
 tobi_status view_write_png(const char *path, const canvas *c, tobi_error *err)
 {
     const int channels = c->alpha ? 4 : 3;
-    unsigned char *bytes = malloc((size_t)c->width*(size_t)c->height*(size_t)channels);
-    if (!bytes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path);
-    view_encode_colors(c, channels, bytes);
-    tobi_file file;
-    tobi_status status = tobi_file_open(&file, path, err);
+    const size_t row = (size_t)c->width*(size_t)channels, rows = (size_t)c->height;
+    uint8_t *bytes = malloc(row*rows), *filtered = malloc((row + 1)*rows);
+    press *p = calloc(1, sizeof *p);
+    tobi_status status = bytes && filtered && p ? TOBI_OK
+        : tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path);
     if (status == TOBI_OK) {
-        if (encode(&file, c->width, c->height, channels, bytes)) {
+        const filtering view = { bytes, filtered, (int64_t)row, channels };
+        tobi_file file;
+        view_encode_colors(c, channels, bytes);
+        tobi_loop(c->threads, c->height, 0, c->kernels->filter_rows, &view);
+        status = tobi_file_open(&file, path, err);
+        if (status == TOBI_OK) {
+            put_picture(&file, p, c, channels, filtered);
             status = tobi_file_commit(&file, err);
-        } else {
-            tobi_file_abandon(&file);
-            status = tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path);
         }
     }
     free(bytes);
+    free(filtered);
+    free(p);
     return status;
 }

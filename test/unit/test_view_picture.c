@@ -553,7 +553,7 @@ static void full_disk_leaves_nothing(void **state)
     getrlimit(RLIMIT_FSIZE, &before);
     tobi_picture f = make_frame();
     remove(path);
-    for (rlim_t size = 0; size < 10000; size += 2500) {
+    for (rlim_t size = 0; size < 6000; size += 1500) {
         struct rlimit limit = { size, before.rlim_max };
         tobi_error err;
         setrlimit(RLIMIT_FSIZE, &limit);
