@@ -232,15 +232,19 @@ struct surface_request {
     const struct rest_map *map;  /* with a skin                                                    */
     int     skin_number;         /* of its image                                                   */
     vec     plain;
-    float   level;               /* of the kernel sum, 1 inside: small keeps what is thin          */
+    float   level;               /* of the kernel sum, 1 inside                                    */
     double  radius;              /* m, half the spacing of these particles                         */
     float   drop;                /* m, radius of a ball for a particle of its own; 0 = none        */
     bool    joins;               /* particles that touch others are within the surface             */
+    bool    evens;               /* particles count the more the fewer are around: nothing shrinks */
 };
 /* Particles outside of the surface become balls of drops. *around: 1 if the eye is inside of it. */
 tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, const surface_request *r,
                              bool *around,
                              tobi_error *err);
+
+/* Where a lattice that `evens` ends half a spacing beyond its last layer, so that its volume is right. */
+static inline float view_even_level(int dimension) { return dimension == 2 ? 0.57f : 0.575f; }
 
 /* region.c, of 2-D: its faces lie behind bodies. */
 tobi_status view_add_region(geometry *g, const canvas *c, const surface_request *r, tobi_error *err);

@@ -379,8 +379,8 @@ static bool sum_particles(grid *s, const surface_request *r, const vec *colors)
                        colors,
                        s->node, NULL, s->colored, s->reach, NULL, NULL };
     tobi_loop(s->c->threads, s->blocks, 1, k->sum_nodes, &view);
-    if (r->joins) {
-        if (!view_join_drops(s, r)) return false;
+    if (r->joins || r->evens) {
+        if (!view_weigh_particles(s, r)) return false;
         view.extra = s->extra, view.touched = s->touched;
         tobi_loop(s->c->threads, s->blocks, 1, k->sum_nodes, &view);
     }

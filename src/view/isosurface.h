@@ -56,7 +56,7 @@ void view_find_blocks(const grid *s, const float place[3], float reach, reached 
 /* isosurface_drops.c: the node values between nodes; by how much more each particle must count, of sums not
    yet limited, false: no memory; balls for the particles outside of the surface, false: no memory. */
 float view_sum_at(const grid *s, const float place[3]);
-bool view_join_drops(grid *s, const surface_request *r);
+bool view_weigh_particles(grid *s, const surface_request *r);
 bool view_add_drops(const grid *s, const surface_request *r, geometry *g);
 
 /* isosurface_faces.c: the finished vertices and quads as vertices and faces of g; false: no memory. */

@@ -261,8 +261,6 @@ static bool sort_by_group(const tobi_picture *f, surface_request *r, int32_t *ro
     return true;
 }
 
-/* Of solids: what is stretched keeps together. */
-static const float solid_level = 0.38f;
 
 static double radius_of(const tobi_picture *f, int64_t i) { return f->radii ? f->radii[i] : f->radius; }
 
@@ -299,7 +297,8 @@ static tobi_status add_groups(scene *s, surface_request all, geometry *g, geomet
             r.skin = &f->skins[skin], r.skin_number = f->mesh_count + skin, r.color = s->rest, r.map = &map;
         }
         if (f->dimension == 2) {
-            if (f->opaque && f->opaque[r.row[0]]) r.level = solid_level;
+            r.evens = f->opaque && f->opaque[r.row[0]];
+            if (r.evens) r.level = view_even_level(2);
             TOBI_TRY(view_add_region(g, &s->c, &r, err));
             continue;
         }
@@ -314,7 +313,8 @@ static tobi_status add_solids(scene *s, tobi_error *err)
     surface_request all = choose(s, true);
     bool within;
     all.plain = (vec){ 0.20f, 0.30f, 0.45f };
-    all.level = solid_level;
+    all.level = view_even_level(3);
+    all.evens = true;
     all.drop = 1.1f;
     return add_groups(s, all, &s->solids, &s->solids, &within, err);
 }

@@ -6,9 +6,13 @@
 #include "view/shade.h"
 #include "view/skin.h"
 #include <stdlib.h>
+#include <string.h>
 
 /* In cells, half a spacing each: of sums, and of colours, which stay sharp. */
 enum { MOST_NODES = 1 << 24, REACH = 6, COLOR_REACH = 3 };
+
+/* Of a solid: below this sum a particle is in a row, or alone, and becomes a disc. */
+static const float in_solid = 0.3f;
 
 typedef struct plane {
     const canvas *c;
@@ -19,6 +23,7 @@ typedef struct plane {
     float *node;                 /* sums: 1 inside                                          */
     vec   *color;                /* of nodes; the mean of those around, the nearest counts  */
     float *weight;               /* most by far. NULL: one colour for all                   */
+    float *count;                /* of particles: what each counts; NULL: 1                 */
     int32_t *vertex;             /* of nodes inside, or -1                                  */
     float  behind;               /* m, depth of what is drawn: bodies are before it         */
 } plane;
@@ -53,10 +58,12 @@ static bool place_nodes(plane *p)
     return true;
 }
 
-/* Adds a particle to the nodes within its reach. */
-static void add_particle(plane *p, int64_t i)
+/* Adds the k-th particle to the nodes within its reach. */
+static void add_particle(plane *p, int64_t number)
 {
+    const int64_t i = p->r->row[number];
     const double *x = p->r->f->positions[i];
+    const float count = p->count ? p->count[number] : 1;
     const vec own = p->color ? p->r->color[i] : p->r->plain;
     float at[2];
     int low[2], high[2];
@@ -73,7 +80,7 @@ static void add_particle(plane *p, int64_t i)
             const float s = above(1 - square/(COLOR_REACH*COLOR_REACH));
             const int64_t k = node_at(p, m, n);
             if (!(t > 0)) continue;
-            p->node[k] += t*t*t;
+            p->node[k] += count*(t*t*t);
             if (!p->color) continue;
             const float w = power_16(s)*power_16(s) + 1e-9f*t;      /* the latter where nothing is near */
             p->color[k] = vec_add(p->color[k], vec_scale(w, own));
@@ -81,12 +88,17 @@ static void add_particle(plane *p, int64_t i)
         }
 }
 
+static float sum_per_particle(const plane *p)
+{
+    const float spacings = (float)(REACH*p->edge/(2*p->r->radius));
+    return 4/(spacings*spacings*3.14159265f);
+}
+
 /* Sums become 1 inside whatever wall is near; beyond walls and the clip plane they fall through the level. */
 static void limit_nodes(plane *p)
 {
     const tobi_picture *f = p->r->f;
-    const float spacings = (float)(REACH*p->edge/(2*p->r->radius)), level = p->r->level;
-    const float per_particle = 4/(spacings*spacings*3.14159265f);
+    const float per_particle = sum_per_particle(p), level = p->r->level;
     for (int n = 0; n < p->size[1]; n++)
         for (int m = 0; m < p->size[0]; m++) {
             float *node = &p->node[node_at(p, m, n)], most = INFINITY;
@@ -157,6 +169,25 @@ static bool add_cell(const plane *p, geometry *g, int x, int y)
     return true;
 }
 
+/* Half a cell from walls, beyond which there is nothing; false: no node is near. */
+static bool find_place(const plane *p, const double x[3], double at[2])
+{
+    for (int k = 0; k < 2; k++)
+        at[k] = fmin(fmax((x[k] - p->low[k])/p->edge, (double)p->wall[k][0] + 0.5),
+                     (double)p->wall[k][1] - 0.5);
+    return p->node && at[0] >= 0 && at[1] >= 0 && at[0] < p->size[0] - 1 && at[1] < p->size[1] - 1;
+}
+
+static float sum_between_nodes(const plane *p, const double at[2])
+{
+    float sum = 0;
+    for (int k = 0; k < 4; k++) {
+        const int m = (int)at[0] + (k & 1), n = (int)at[1] + (k >> 1);
+        sum += (float)((1 - fabs(m - at[0]))*(1 - fabs(n - at[1])))*p->node[node_at(p, m, n)];
+    }
+    return sum;
+}
+
 /* Discs for particles outside of the region, or in a thread of it. */
 static bool add_discs(const plane *p, geometry *g)
 {
@@ -166,18 +197,8 @@ static bool add_discs(const plane *p, geometry *g)
     for (int64_t i = 0; i < r->count; i++) {
         const double *x = r->f->positions[r->row[i]];
         double at[2];
-        float sum = 0;
         if (!view_is_shown(r->f, r->row[i]) || !(fabs(x[0]) + fabs(x[1]) < 1e9)) continue;
-        for (int k = 0; k < 2; k++)      /* half a cell from walls, beyond which there is nothing */
-            at[k] = fmin(fmax((x[k] - p->low[k])/p->edge, (double)p->wall[k][0] + 0.5),
-                         (double)p->wall[k][1] - 0.5);
-        const bool known = p->node && at[0] >= 0 && at[1] >= 0 && at[0] < p->size[0] - 1 &&
-                           at[1] < p->size[1] - 1;
-        for (int k = 0; k < 4 && known; k++) {
-            const int m = (int)at[0] + (k & 1), n = (int)at[1] + (k >> 1);
-            sum += (float)((1 - fabs(m - at[0]))*(1 - fabs(n - at[1])))*p->node[node_at(p, m, n)];
-        }
-        if (sum > least) continue;
+        if (find_place(p, x, at) && sum_between_nodes(p, at) > least) continue;
         vec place = view_point(&p->c->camera, x);
         const vec color = r->skin ? view_skin_color(r, r->row[i]) : r->color ? r->color[r->row[i]] : r->plain;
         for (int rim = 0; rim < 2; rim++) {
@@ -189,6 +210,24 @@ static bool add_discs(const plane *p, geometry *g)
     return true;
 }
 
+/* Of sums that are not limited yet. */
+static bool find_counts(plane *p)
+{
+    const float per_particle = sum_per_particle(p);
+    p->count = malloc(((size_t)p->r->count + 1)*sizeof *p->count);
+    for (int64_t i = 0; p->count && i < p->r->count; i++) {
+        double at[2];
+        p->count[i] = 1;
+        if (!find_place(p, p->r->f->positions[p->r->row[i]], at)) continue;
+        float sum = per_particle*sum_between_nodes(p, at);
+        for (int k = 0; k < 2; k++)
+            sum /= share_inside(((float)at[k] - p->wall[k][0])/REACH)
+                *share_inside((p->wall[k][1] - (float)at[k])/REACH);
+        if (sum > in_solid && sum < 1) p->count[i] = 1/sqrtf(sum);
+    }
+    return p->count != NULL;
+}
+
 static bool make_region(plane *p, geometry *g)
 {
     const size_t n = (size_t)p->size[0]*(size_t)p->size[1];
@@ -197,7 +236,16 @@ static bool make_region(plane *p, geometry *g)
     if (p->r->color) p->color = calloc(n, sizeof *p->color);
     if (p->r->color) p->weight = calloc(n, sizeof *p->weight);
     bool enough = p->node && p->vertex && (!p->r->color || (p->color && p->weight));
-    for (int64_t i = 0; enough && i < p->r->count; i++) add_particle(p, p->r->row[i]);
+    for (int64_t i = 0; enough && i < p->r->count; i++) add_particle(p, i);
+    if (enough && p->r->evens) {
+        enough = find_counts(p);
+        if (enough) memset(p->node, 0, n*sizeof *p->node);
+        if (enough && p->color) {
+            memset(p->color, 0, n*sizeof *p->color);
+            memset(p->weight, 0, n*sizeof *p->weight);
+        }
+        for (int64_t i = 0; enough && i < p->r->count; i++) add_particle(p, i);
+    }
     if (enough) limit_nodes(p);
     for (size_t k = 0; enough && k < n; k++) p->vertex[k] = -1;
     for (int y = 0; enough && y + 1 < p->size[1]; y++)
@@ -216,6 +264,7 @@ tobi_status view_add_region(geometry *g, const canvas *c, const surface_request 
     for (int64_t i = vertex; i < g->vertices; i++) g->place[i].z = p.behind;
     if (enough) enough = add_discs(&p, g);
     free(p.node);
+    free(p.count);
     free(p.color);
     free(p.weight);
     free(p.vertex);

@@ -38,6 +38,12 @@ def check(what, ok):
     print("ok    " if ok else "FAILED", what)
 
 
+def paeth(left, above, corner):
+    """That of the three which is nearest to left + above - corner (ISO/IEC 15948)."""
+    a, b, c = abs(above - corner), abs(left - corner), abs(left + above - 2*corner)
+    return left if a <= b and a <= c else above if b <= c else corner
+
+
 def read_png(path):
     """Rows of pixels, three bytes each."""
     data, at, packed = path.read_bytes(), 8, b""
@@ -50,9 +56,10 @@ def read_png(path):
     raw, rows, above = zlib.decompress(packed), [], bytes(3*width)
     for y in range(height):
         how, line = raw[y*(3*width + 1)], bytearray(raw[y*(3*width + 1) + 1:(y + 1)*(3*width + 1)])
-        assert how in (0, 1, 2), "a filter that this test does not know"
+        assert how in (0, 1, 2, 4), "a filter that this test does not know"
         for k in range(3*width if how else 0):
-            line[k] = (line[k] + (above[k] if how == 2 else line[k - 3] if k > 2 else 0)) & 255
+            left, corner = (line[k - 3], above[k - 3]) if k > 2 else (0, 0)
+            line[k] = (line[k] + (left if how == 1 else above[k] if how == 2 else paeth(left, above[k], corner))) & 255
         rows.append(line)
         above = line
     return rows
