@@ -8,11 +8,12 @@
 
 typedef struct run_options {
     const char *scene, *out, *movie, *keys;
+    double slow;                /* 0: not given */
     overrides set;
     int force, quiet, window;
 } run_options;
 
-enum { KEY_FORCE = KEY_OWN, KEY_FRAMES, KEY_MOVIE, KEY_WINDOW, KEY_KEYS };
+enum { KEY_FORCE = KEY_OWN, KEY_FRAMES, KEY_MOVIE, KEY_SLOW, KEY_WINDOW, KEY_KEYS };
 
 static const struct argp_option options[] = {
     { "out", 'o', "DIR", 0, "where the results go (out/<scene>)", 0 },
@@ -22,6 +23,7 @@ static const struct argp_option options[] = {
     { "frames", KEY_FRAMES, NULL, 0, "write a picture at each output", 0 },
     { "movie", KEY_MOVIE, "FILE", 0, "and a movie of them at the end: .mp4, .webm, .webp or .gif; one "
         "of each view", 0 },
+    { "slow", KEY_SLOW, "N", 0, "with --movie: N times slower than the scene is (1)", 0 },
     { "window", KEY_WINDOW, NULL, 0, "watch the run in a window; the key h lists its keys", 0 },
     { "keys", KEY_KEYS, "LETTERS", 0, "keys typed into the window at the start", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
@@ -44,9 +46,13 @@ static error_t parse(int key, char *value, struct argp_state *state)
         overrides_add(&o->set, "output.frames=true");
         o->movie = value;
         break;
+    case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;
     case KEY_FORCE: o->force = 1; break;
     case KEY_WINDOW: o->window = 1; break;
     case KEY_KEYS: o->keys = value; break;
+    case ARGP_KEY_SUCCESS:
+        if (o->slow > 0 && !o->movie) argp_error(state, "--slow needs --movie FILE");
+        break;
     default: return parse_scene_option(state, key, value, &o->set, &o->scene);
     }
     return 0;
@@ -106,12 +112,13 @@ enum { PREPARE, MAKE };
 static int handle_movies(const tobi_scene *scene, const run_options *o, const char *dir, int stage)
 {
     const tobi_output_def *output = tobi_scene_output_def(scene);
-    int code = stage == MAKE ? make_movie(dir, NULL, o->movie, 1, o->force)
+    const double slow = o->slow > 0 ? o->slow : 1;
+    int code = stage == MAKE ? make_movie(dir, NULL, o->movie, slow, o->force)
                              : prepare_movie(o->movie, o->force);
     for (int k = 0; code == 0 && k < output->view_count; k++) {
         char *path = movie_of_view(o->movie, output->views[k].name);
         code = !path ? complain("out of memory")
-             : stage == MAKE ? make_movie(dir, output->views[k].name, path, 1, o->force)
+             : stage == MAKE ? make_movie(dir, output->views[k].name, path, slow, o->force)
                              : prepare_movie(path, o->force);
         free(path);
     }

@@ -4,6 +4,7 @@
 #include "view/draw.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* An edge of the domain: where it begins, and along which axis it goes. */
 typedef struct edge { double from[3]; int axis; spot a, b; bool seen; } edge;
@@ -39,7 +40,22 @@ static edge choose_edge(const canvas *c, const tobi_picture *f, int axis)
     return best;
 }
 
-static void draw_ticks(canvas *c, const tobi_picture *f, const edge *e, float way[2])
+/* Where numbers stand: left, top, right, bottom. */
+typedef struct labels { float box[64][4]; int count; } labels;
+
+/* A number that would stand in another, at the corner of two axes, is left out. */
+static bool has_room(labels *l, float x, float y, float wide, float unit)
+{
+    const float gap = 2*unit, own[4] = { x - gap, y - 8*unit, x + wide + gap, y };
+    for (int k = 0; k < l->count; k++) {
+        const float *b = l->box[k];
+        if (own[0] < b[2] && own[2] > b[0] && own[1] < b[3] && own[3] > b[1]) return false;
+    }
+    if (l->count < 64) memcpy(l->box[l->count++], own, sizeof own);
+    return true;
+}
+
+static void draw_ticks(canvas *c, const tobi_picture *f, const edge *e, float way[2], labels *l)
 {
     const int k = e->axis;
     const float unit = 0.8f*view_letter_unit(c);
@@ -54,8 +70,9 @@ static void draw_ticks(canvas *c, const tobi_picture *f, const edge *e, float wa
         view_draw_stroke(c, (float[2]){ s.x, s.y }, to, 1.2f, ink);
         snprintf(text, sizeof text, "%.4g", fabs(v) < 1e-9*step ? 0 : v);
         const float wide = view_text_width(text, unit);
-        view_draw_text(c, to[0] + (way[0] < -0.5f ? -wide - 2*unit : way[0] > 0.5f ? 2*unit : -0.5f*wide),
-                       to[1] + (way[1] > 0.5f ? 9*unit : 3*unit), unit, text, ink);
+        const float x = to[0] + (way[0] < -0.5f ? -wide - 2*unit : way[0] > 0.5f ? 2*unit : -0.5f*wide);
+        const float y = to[1] + (way[1] > 0.5f ? 9*unit : 3*unit);
+        if (has_room(l, x, y, wide, unit)) view_draw_text(c, x, y, unit, text, ink);
     }
     snprintf(text, sizeof text, "%c [m]", "xyz"[k]);
     const float wide = view_text_width(text, unit), x = 0.5f*(e->a.x + e->b.x), y = 0.5f*(e->a.y + e->b.y);
@@ -67,6 +84,7 @@ static void draw_ticks(canvas *c, const tobi_picture *f, const edge *e, float wa
 void view_draw_axes(canvas *c, const tobi_picture *f)
 {
     double middle[3] = { 0, 0, 0 };
+    labels l = { .count = 0 };
     for (int k = 0; k < f->dimension; k++) middle[k] = 0.5*(f->box_min[k] + f->box_max[k]);
     const vec m = view_point(&c->camera, middle);
     const spot center = project(&c->camera, m);
@@ -77,7 +95,7 @@ void view_draw_axes(canvas *c, const tobi_picture *f)
         float way[2] = { -dy/length, dx/length };      /* outwards, across the edge */
         const float x = 0.5f*(e.a.x + e.b.x) - center.x, y = 0.5f*(e.a.y + e.b.y) - center.y;
         if (way[0]*x + way[1]*y < 0) way[0] = -way[0], way[1] = -way[1];
-        draw_ticks(c, f, &e, way);
+        draw_ticks(c, f, &e, way, &l);
     }
 }
 

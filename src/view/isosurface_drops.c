@@ -43,7 +43,7 @@ static float sum_between_walls(const grid *s, const float place[3])
 /* By how much more a particle counts; -1: it is well within. */
 static float find_extra(const surface_request *r, float sum)
 {
-    if (r->evens) return sum > in_solid && sum < 1 ? 1/sqrtf(sum*sqrtf(sum)) - 1 : 0;
+    if (r->evens) return sum > (r->joins ? touching : in_solid) && sum < 1 ? 1/sqrtf(sum*sqrtf(sum)) - 1 : 0;
     return sum > within ? -1 : sum > touching ? extra_per_sum*(within - sum) : 0;
 }
 

@@ -302,6 +302,7 @@ static tobi_status add_groups(scene *s, surface_request all, geometry *g, geomet
             TOBI_TRY(view_add_region(g, &s->c, &r, err));
             continue;
         }
+        if (r.evens) r.joins = !(f->opaque && f->opaque[r.row[0]]);      /* water in the colours of a field */
         TOBI_TRY(view_add_surface(g, drops, &s->c, &r, &around, err));
         *within |= around;
     }

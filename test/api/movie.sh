@@ -82,6 +82,9 @@ expect 0 "" movie "100%d run" --out film.webp
 check "film.webp has 11 pictures" test "$(grep -aoc WEBP film.webp) $(grep -ao ANMF film.webp | wc -l)" = "1 11"
 expect 0 "" run drop.json --out again --quiet --movie again.mp4
 check "run --movie" is again.mp4 11 0.22
+expect 2 "--slow needs --movie" run drop.json --out no --slow 2
+expect 0 "" run drop.json --out slowly --quiet --movie slowly.mp4 --slow 5
+check "run --movie --slow" is slowly.mp4 11 1.1
 views='output.views=[{"name": "p", "picture": {"field": "pressure"}}]'
 expect 0 "" run drop.json --out views --quiet --movie views.mp4 --set "$views"
 check "run --movie makes one of each view" is views_p.mp4 11 0.22

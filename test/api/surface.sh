@@ -136,6 +136,37 @@ check "glTF holds what it should" test $? = 0
 if command -v assimp > /dev/null; then
     check "assimp reads it" assimp info one.glb
 fi
+# VTK's reader of glTF: at the time of each frame that frame alone has a size, that of its VTP file.
+if /usr/bin/python3 -c "import vtk" 2> /dev/null; then
+    expect 0 "" surface dam --format vtp
+    check "VTK sees the animation" /usr/bin/python3 - <<'END'
+import vtk
+def shown(time):
+    reader = vtk.vtkGLTFReader()
+    reader.SetFileName("one.glb")
+    reader.SetFrameRate(100)
+    reader.UpdateInformation()
+    assert reader.GetNumberOfAnimations() == 1 and abs(reader.GetAnimationDuration(0) - 0.15) < 1e-6
+    reader.EnableAnimation(0)
+    reader.UpdateInformation()
+    reader.UpdateTimeStep(time)
+    tree, seen = reader.GetOutput().NewIterator(), []
+    while not tree.IsDoneWithTraversal():
+        part = tree.GetCurrentDataObject()
+        box = part.GetBounds()
+        if max(box[1] - box[0], box[3] - box[2], box[5] - box[4]) > 1e-6: seen.append((part.GetNumberOfCells(), box))
+        tree.GoToNextItem()
+    return seen
+for k in range(3):
+    own = vtk.vtkXMLPolyDataReader()
+    own.SetFileName(f"dam/surface/surface_{k:06d}.vtp")
+    own.Update()
+    (cells, box), = shown(0.05*k + 0.02)
+    x, y, z = (own.GetOutput().GetBounds()[2*a:2*a + 2] for a in range(3))
+    assert cells == own.GetOutput().GetNumberOfCells(), (k, cells)
+    for a, b in zip(box, (*x, *z, -y[1], -y[0])): assert abs(a - b) < 1e-5, (k, box, x, y, z)
+END
+fi
 
 # The volume of the water is that of its particles, but for what water beside walls stands too high.
 expect 0 "" surface dam --format stl --smooth 25 --cell 0.5 --last
