@@ -164,13 +164,20 @@ char *results_path(const tobi_scene *scene, const char *out);
 
 /* tool.c: runs a program, found by the PATH, in a folder (NULL: here) without a shell. 0; -1 if it failed;
    after a complaint EXIT_ERROR. does, package: what it is for, and what to install, for that. quiet: without
-   its standard output. */
-int run_tool(const char *folder, char *const arguments[], const char *does, const char *package, int quiet);
+   its standard output. said: gets the first line of its errors, which then appear nowhere; or NULL. */
+enum { TOOL_SAYS = 300 };
+int run_tool(const char *folder, char *const arguments[], const char *does, const char *package, int quiet,
+             char said[TOOL_SAYS]);
 /* Draws plots.gnuplot in the folder, without the user's settings. Returns the exit code. */
 int run_gnuplot(const char *folder);
 /* The path of a file in the folder, whatever stood there removed: nothing is written through a link.
    NULL after a complaint; the caller frees. */
 char *clear_place(const char *folder, const char *file);
+
+/* surface.c: the name of a format, or NULL; the surfaces of each output, as tobiuo surface makes them, whose
+   exit code is returned. */
+const char *surface_format(const char *name);
+int make_surfaces(const char *dir, const char *format, double slow);
 
 /* movie.c */
 /* Why a path is not that of a movie, to stand behind its name; NULL if it is. */

@@ -163,8 +163,9 @@ static int encode(const char *dir, const char *view, const char *part, const str
     for (int k = 0; kind->option[k]; k++) argument[n++] = (char *)kind->option[k];
     for (size_t k = 0; k < sizeof last/sizeof *last; k++) argument[n++] = (char *)last[k];
     argument[n] = NULL;
-    int code = run_tool(NULL, argument, "makes the movie", "ffmpeg", 0);
-    if (code < 0) code = complain("ffmpeg failed on %s", pictures);
+    char said[TOOL_SAYS];
+    int code = run_tool(NULL, argument, "makes the movie", "ffmpeg", 0, said);
+    if (code < 0) code = complain("ffmpeg failed on %s: %s", pictures, said);
     free(pictures);
     free(file);
     return code;
@@ -191,7 +192,7 @@ int prepare_movie(const char *out, int force)
 int check_encoder(void)
 {
     char *const ask[] = { "ffmpeg", "-version", NULL };
-    const int code = run_tool(NULL, ask, "makes the movie", "ffmpeg", 1);
+    const int code = run_tool(NULL, ask, "makes the movie", "ffmpeg", 1, NULL);
     return code < 0 ? complain("ffmpeg does not work") : code;
 }
 

@@ -7,13 +7,13 @@
 #include <string.h>
 
 typedef struct run_options {
-    const char *scene, *out, *movie, *keys;
+    const char *scene, *out, *movie, *surface, *keys;
     double slow;                /* 0: not given */
     overrides set;
     int force, quiet, window;
 } run_options;
 
-enum { KEY_FORCE = KEY_OWN, KEY_FRAMES, KEY_MOVIE, KEY_SLOW, KEY_WINDOW, KEY_KEYS };
+enum { KEY_FORCE = KEY_OWN, KEY_FRAMES, KEY_MOVIE, KEY_SURFACE, KEY_SLOW, KEY_WINDOW, KEY_KEYS };
 
 static const struct argp_option options[] = {
     { "out", 'o', "DIR", 0, "where the results go (out/<scene>)", 0 },
@@ -23,7 +23,9 @@ static const struct argp_option options[] = {
     { "frames", KEY_FRAMES, NULL, 0, "write a picture at each output", 0 },
     { "movie", KEY_MOVIE, "FILE", 0, "and a movie of them at the end: .mp4, .webm, .webp or .gif; one "
         "of each view", 0 },
-    { "slow", KEY_SLOW, "N", 0, "with --movie: N times slower than the scene is (1)", 0 },
+    { "surface", KEY_SURFACE, "FORMAT", 0, "and the surfaces of fluids and solids at the end, as \"tobiuo "
+        "surface\" makes them: vtp, obj, ply, stl or glb", 0 },
+    { "slow", KEY_SLOW, "N", 0, "with --movie, --surface=glb: N times slower than the scene is (1)", 0 },
     { "window", KEY_WINDOW, NULL, 0, "watch the run in a window; the key h lists its keys", 0 },
     { "keys", KEY_KEYS, "LETTERS", 0, "keys typed into the window at the start", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
@@ -46,12 +48,16 @@ static error_t parse(int key, char *value, struct argp_state *state)
         overrides_add(&o->set, "output.frames=true");
         o->movie = value;
         break;
+    case KEY_SURFACE:
+        o->surface = surface_format(value);
+        if (!o->surface) argp_error(state, "--surface: '%s' is none of vtp, obj, ply, stl, glb", value);
+        break;
     case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;
     case KEY_FORCE: o->force = 1; break;
     case KEY_WINDOW: o->window = 1; break;
     case KEY_KEYS: o->keys = value; break;
     case ARGP_KEY_SUCCESS:
-        if (o->slow > 0 && !o->movie) argp_error(state, "--slow needs --movie FILE");
+        if (o->slow > 0 && !o->movie && !o->surface) argp_error(state, "--slow needs --movie FILE");
         break;
     default: return parse_scene_option(state, key, value, &o->set, &o->scene);
     }
@@ -136,12 +142,18 @@ static int run_scene(tobi_scene *scene, const run_options *o)
         printf("a scene of %s; \"tobiuo check\" lists what became of each of its keys\n",
                tobi_scene_import_program(scene));
     int code = dir ? check_size(scene, world, o, dir, &size) : complain("out of memory");
+    if (code == 0 && o->surface && tobi_scene_world_def(scene)->dimension != 3)
+        code = complain("--surface: a run in 2-D has no surface");
     if (code == 0 && o->movie) code = handle_movies(scene, o, dir, PREPARE);
     const int no_movie = code == 0 && o->movie ? check_encoder() : 0;
     if (no_movie) complain("the run goes on and keeps its pictures; later: tobiuo movie %s", dir);
     if (code == 0) code = record(scene, world, o, dir, &size);
     if ((code == 0 || code == EXIT_UNWRITTEN) && o->movie) {      /* of the pictures that there are */
         const int made = no_movie ? no_movie : handle_movies(scene, o, dir, MAKE);
+        if (code == 0) code = made;
+    }
+    if ((code == 0 || code == EXIT_UNWRITTEN) && o->surface) {
+        const int made = make_surfaces(dir, o->surface, o->slow > 0 ? o->slow : 1);
         if (code == 0) code = made;
     }
     free(dir);

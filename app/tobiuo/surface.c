@@ -36,15 +36,20 @@ static const struct argp_option options[] = {
 
 static const char *const formats[] = { "vtp", "obj", "ply", "stl", "glb" };
 
+const char *surface_format(const char *name)
+{
+    for (size_t k = 0; k < sizeof formats/sizeof *formats; k++)
+        if (strcmp(formats[k], name) == 0) return formats[k];
+    return NULL;
+}
+
 static error_t parse(int key, char *value, struct argp_state *state)
 {
     surface_options *o = state->input;
     char *end;
     switch (key) {
     case 'f':
-        o->format = NULL;
-        for (size_t k = 0; k < sizeof formats/sizeof *formats; k++)
-            if (strcmp(formats[k], value) == 0) o->format = formats[k];
+        o->format = surface_format(value);
         if (!o->format) argp_error(state, "--format: '%s' is none of vtp, obj, ply, stl, glb", value);
         break;
     case KEY_CELL:
@@ -409,25 +414,23 @@ const struct argp surface_argp = { .options = options, .parser = parse, .args_do
     .doc = "Make the surfaces of the fluids and of each piece of the solids of the run in DIR from its "
            "particles: closed meshes in DIR/surface, for each output, or DIR/surface.glb, for Blender." };
 
-int tobiuo_surface(int argc, char **argv)
+static int make(surface_options *o)
 {
-    surface_options o = { .format = "vtp", .cell = 0.75, .slow = 1, .smooth = 20 };
     tobi_results *results = NULL;
     tobi_error err = { 0 };
     input in = { 0 };
     totals t = { 0 };
     double up[3];
-    parse_arguments(&surface_argp, argc, argv, &o);
-    int code = read_scene(&o, &in, up);
+    int code = read_scene(o, &in, up);
     if (code != 0) return code;
-    if (tobi_results_open(o.dir, &results, &err) != TOBI_OK) return complain("%s", err.text);
-    o.images = strcmp(o.format, "glb") == 0 && !o.field;
-    if (o.images) code = make_skins(&in);
+    if (tobi_results_open(o->dir, &results, &err) != TOBI_OK) return complain("%s", err.text);
+    o->images = strcmp(o->format, "glb") == 0 && !o->field;
+    if (o->images) code = make_skins(&in);
     if (code != 0) return code;
     const double begun = wall_clock();
-    const int64_t first = o.last ? tobi_results_count(results) - 1 : 0;
-    code = strcmp(o.format, "glb") == 0 ? write_movie(&o, results, up, first, &in, &t)
-                                        : write_files(&o, results, first, &in, &t);
+    const int64_t first = o->last ? tobi_results_count(results) - 1 : 0;
+    code = strcmp(o->format, "glb") == 0 ? write_movie(o, results, up, first, &in, &t)
+                                         : write_files(o, results, first, &in, &t);
     if (code == 0)
         printf(", %.3g million triangles, %.3g million particles in %.3g s\n", 1e-6*(double)t.triangles,
                1e-6*t.particles, wall_clock() - begun);
@@ -436,4 +439,20 @@ int tobiuo_surface(int argc, char **argv)
     tobi_looks_free(&in.looks);
     tobi_results_free(results);
     return code;
+}
+
+static const surface_options usual = { .format = "vtp", .cell = 0.75, .slow = 1, .smooth = 20 };
+
+int make_surfaces(const char *dir, const char *format, double slow)
+{
+    surface_options o = usual;
+    o.dir = dir, o.format = format, o.slow = slow;
+    return make(&o);
+}
+
+int tobiuo_surface(int argc, char **argv)
+{
+    surface_options o = usual;
+    parse_arguments(&surface_argp, argc, argv, &o);
+    return make(&o);
 }

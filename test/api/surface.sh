@@ -44,6 +44,13 @@ assert reader.GetOutput().GetPointData().GetNormals() is not None'
 fi
 check "no parts are left" test -z "$(find dam -name '*.part')"
 
+expect 2 "is none of vtp" run dam.json --out no --surface dxf
+expect 1 "a run in 2-D has no surface" run dam.json --out no --surface glb --set dimension=2 \
+    --set 'gravity=[0, -9.81]' --set output.surface={}
+expect 0 "" run dam.json --out film --quiet --surface glb --slow 2 --set output.surface.write=false
+expect 0 "" surface dam --format glb --slow 2
+check "run --surface is tobiuo surface" cmp film/surface.glb dam/surface.glb
+
 # Two liquids: a surface and a colour each, which lets light through.
 cat > two.json <<'END'
 { "domain": {"min": [0, 0, 0], "max": [0.4, 0.2, 0.3]}, "gravity": [0, 0, -9.81], "spacing": 0.02, "end_time": 0.01,
