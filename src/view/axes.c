@@ -40,10 +40,10 @@ static edge choose_edge(const canvas *c, const tobi_picture *f, int axis)
     return best;
 }
 
-/* Where numbers stand: left, top, right, bottom. */
+/* Where names and numbers stand: left, top, right, bottom. */
 typedef struct labels { float box[64][4]; int count; } labels;
 
-/* A number that would stand in another, at the corner of two axes, is left out. */
+/* What would stand in another, as at the corner of two axes, is left out. */
 static bool has_room(labels *l, float x, float y, float wide, float unit)
 {
     const float gap = 2*unit, own[4] = { x - gap, y - 8*unit, x + wide + gap, y };
@@ -74,11 +74,23 @@ static void draw_ticks(canvas *c, const tobi_picture *f, const edge *e, float wa
         const float y = to[1] + (way[1] > 0.5f ? 9*unit : 3*unit);
         if (has_room(l, x, y, wide, unit)) view_draw_text(c, x, y, unit, text, ink);
     }
-    snprintf(text, sizeof text, "%c [m]", "xyz"[k]);
-    const float wide = view_text_width(text, unit), x = 0.5f*(e->a.x + e->b.x), y = 0.5f*(e->a.y + e->b.y);
-    view_draw_text(c, clampf(x + 34*unit*way[0] - (way[0] < -0.5f ? wide : 0.5f*wide), 2,
-                             (float)c->width - wide),
-                   clampf(y + 22*unit*way[1] + 3*unit, 8*unit, (float)c->height - 2*unit), unit, text, ink);
+}
+
+static void draw_name(canvas *c, const edge *e, const float way[2], labels *l)
+{
+    const float unit = 0.8f*view_letter_unit(c);
+    const vec ink = { 0.02f, 0.03f, 0.05f };
+    char text[8];
+    snprintf(text, sizeof text, "%c [m]", "xyz"[e->axis]);
+    const float wide = view_text_width(text, unit), lowest = (float)c->height - 2*unit;
+    const float most = lowest - 25*unit*way[1] - 3*unit;
+    /* Along the edge: its middle, or where numbers are rare if there is no room below them. */
+    const float t = 0.5f*(e->a.y + e->b.y) > most ? 0.72f : 0.5f;
+    const float x = e->a.x + t*(e->b.x - e->a.x), y = e->a.y + t*(e->b.y - e->a.y);
+    const float left = clampf(x + 38*unit*way[0] - (way[0] < -0.5f ? wide : 0.5f*wide), 2,
+                              (float)c->width - wide);
+    const float base = clampf(y + 25*unit*way[1] + 3*unit, 8*unit, lowest);
+    if (has_room(l, left, base, wide, unit)) view_draw_text(c, left, base, unit, text, ink);
 }
 
 void view_draw_axes(canvas *c, const tobi_picture *f)
@@ -88,15 +100,17 @@ void view_draw_axes(canvas *c, const tobi_picture *f)
     for (int k = 0; k < f->dimension; k++) middle[k] = 0.5*(f->box_min[k] + f->box_max[k]);
     const vec m = view_point(&c->camera, middle);
     const spot center = project(&c->camera, m);
-    for (int axis = 0; axis < f->dimension && m.z > c->camera.near; axis++) {
-        const edge e = choose_edge(c, f, axis);
-        const float dx = e.b.x - e.a.x, dy = e.b.y - e.a.y, length = sqrtf(dx*dx + dy*dy);
-        if (!e.seen || !(length > 40) || !(length < 1e5f)) continue;
-        float way[2] = { -dy/length, dx/length };      /* outwards, across the edge */
-        const float x = 0.5f*(e.a.x + e.b.x) - center.x, y = 0.5f*(e.a.y + e.b.y) - center.y;
-        if (way[0]*x + way[1]*y < 0) way[0] = -way[0], way[1] = -way[1];
-        draw_ticks(c, f, &e, way, &l);
-    }
+    for (int numbers = 0; numbers < 2; numbers++)      /* after the names, which stay */
+        for (int axis = 0; axis < f->dimension && m.z > c->camera.near; axis++) {
+            const edge e = choose_edge(c, f, axis);
+            const float dx = e.b.x - e.a.x, dy = e.b.y - e.a.y, length = sqrtf(dx*dx + dy*dy);
+            if (!e.seen || !(length > 40) || !(length < 1e5f)) continue;
+            float way[2] = { -dy/length, dx/length };      /* outwards, across the edge */
+            const float x = 0.5f*(e.a.x + e.b.x) - center.x, y = 0.5f*(e.a.y + e.b.y) - center.y;
+            if (way[0]*x + way[1]*y < 0) way[0] = -way[0], way[1] = -way[1];
+            if (numbers) draw_ticks(c, f, &e, way, &l);
+            else draw_name(c, &e, way, &l);
+        }
 }
 
 enum { ARROW_SIDE = 30 };      /* pixels of a picture of 720 lines: one arrow for each square of it */
