@@ -1,4 +1,5 @@
 /* Walls and bodies of isph that must be the same thing, what it refuses, and how a failed solve is told. */
+#include "tobiuo/motion.h"
 #include "tobiuo/tobiuo.h"
 #include "calls.h"
 #include <math.h>
@@ -188,6 +189,39 @@ static void solves_converge_around_an_odd_grid(void **state)
     tobi_world_destroy(world);
 }
 
+/* Without gravity the speed of the run is that of its bodies, and water goes on when they stop. */
+static void a_body_that_stops_leaves_water_that_moves(void **state)
+{
+    (void)state;
+    tobi_world *world;
+    tobi_motion *motion;
+    tobi_world_def w = make_def(0.3);
+    tobi_body_def plate = tobi_default_body_def();
+    w.gravity[1] = 0;
+    w.domain_max[1] = 0.15;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    add_water(world);
+    OK(tobi_motion_translation((double[3]){ 0.2, 0, 0 }, &motion, &err));
+    OK(tobi_motion_set_times(motion, 0, 0.2, 0.02, &err));
+    plate.name = "plate";
+    plate.box_min[0] = 0.1;
+    plate.box_max[0] = 0.12;
+    plate.box_min[1] = 0.04;
+    plate.box_max[1] = 0.11;
+    plate.motion = tobi_motion_positions;
+    plate.motion_user = motion;
+    plate.motion_rigid = 1;
+    OK(tobi_world_add_body(world, &plate, &err));
+    for (double t = 0; t < 0.3; t += 0.01) {
+        tobi_step_info info;
+        OK(tobi_world_step(world, 0.01, &info, &err));
+        assert_int_equal(info.capped, 0);
+        assert_true(info.speed_max > 0);
+    }
+    tobi_world_destroy(world);
+    tobi_motion_free(motion);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -197,6 +231,7 @@ int main(void)
         cmocka_unit_test(flat_surfaces_are_exact),
         cmocka_unit_test(a_failed_solve_is_told),
         cmocka_unit_test(solves_converge_around_an_odd_grid),
+        cmocka_unit_test(a_body_that_stops_leaves_water_that_moves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
