@@ -109,7 +109,7 @@ def check_readme(program):
         shutil.rmtree("my_ball", ignore_errors=True)
         commands = re.findall(r"^tobiuo (new|check|run|describe) ([^#\n]*)", text, re.M)
         for command, rest in commands:
-            words = re.sub(r"--frames|--window|--movie \S+|--out \S+", "", rest).split()
+            words = re.sub(r"--frames|--window|--movie \S+|--slow \S+|--surface \S+|--out \S+", "", rest).split()
             result = call(program, "check" if command == "run" else command, *words)
             if result.returncode != 0:
                 print(f"{path}: tobiuo {command} {rest}:", result.stderr)
@@ -140,7 +140,7 @@ def check_commands(program):
     """check in the place of run, for no time: it builds the world."""
     failed = count = 0
     for page, words in find_commands():
-        text = re.sub(r"--frames|--window|--movie \S+|--force|--quiet|--out \S+|--threads \S+", "", shlex.join(words))
+        text = re.sub(r"--frames|--window|--movie \S+|--slow \S+|--surface \S+|--force|--quiet|--out \S+|--threads \S+", "", shlex.join(words))
         result = subprocess.run([program, "check", *shlex.split(text), "--until", "1e-9"], capture_output=True,
                                 text=True, cwd=ROOT)
         count += 1
