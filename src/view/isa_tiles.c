@@ -281,11 +281,11 @@ static void copy_depth(const canvas *c, const square *q, float *solid)
 {
     int across, down;
     tile_pixels(c, q, &across, &down);
-    for (int y = 0; y < TILE; y++)
-        for (int x = 0; x < TILE; x++) {
-            const int64_t k = ((int64_t)q->top + y)*c->width + (int64_t)q->left + x;
-            solid[y*TILE + x] = x < across && y < down ? c->depth[k] : INFINITY;
-        }
+    if (across < TILE || down < TILE)
+        for (int k = 0; k < TILE*TILE; k++) solid[k] = INFINITY;
+    for (int y = 0; y < down; y++)
+        memcpy(solid + y*TILE, c->depth + ((int64_t)q->top + y)*c->width + (int64_t)q->left,
+               (size_t)across*sizeof *solid);
 }
 
 /* The front of the water into samples, and metres of water behind each pixel's middle, in front of what is

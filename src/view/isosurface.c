@@ -72,18 +72,21 @@ static void place_particles(grid *s, const surface_request *r)
 
 void view_find_blocks(const grid *s, const float place[3], float reach, reached *r)
 {
-    int low[3], high[3], same = r->count > 0;
+    unsigned low[3], high[3], other = r->count == 0;      /* no place is below 0 */
     for (int k = 0; k < 3; k++) {
-        low[k] = (int)(place[k] - reach)/BLOCK_EDGE;
-        high[k] = (int)(place[k] + reach)/BLOCK_EDGE;
-        same &= low[k] == r->low[k] && high[k] == r->high[k];
+        low[k] = (unsigned)(int)(place[k] - reach)/BLOCK_EDGE;
+        high[k] = (unsigned)(int)(place[k] + reach)/BLOCK_EDGE;
+        other |= (low[k] ^ r->low[k]) | (high[k] ^ r->high[k]);
     }
-    if (same) return;
+    if (!other) return;
+    const int64_t across = s->size[0], layer = across*s->size[1];
+    const int64_t first = low[2]*layer + low[1]*across + low[0];
+    const unsigned more[3] = { high[0] - low[0], high[1] - low[1], high[2] - low[2] };
     r->count = 0;
     for (int k = 0; k < 3; k++) r->low[k] = low[k], r->high[k] = high[k];
-    for (int z = low[2]; z <= high[2]; z++)
-        for (int y = low[1]; y <= high[1]; y++)
-            for (int x = low[0]; x <= high[0]; x++) r->at[r->count++] = block_at(s, x, y, z) - s->at;
+    for (unsigned z = 0; z <= more[2]; z++)
+        for (unsigned y = 0; y <= more[1]; y++)
+            for (unsigned x = 0; x <= more[0]; x++) r->at[r->count++] = first + z*layer + y*across + x;
 }
 
 /* A block has all nodes that a particle reaches and the next ones, so that no surface ends at its edge. */

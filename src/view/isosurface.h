@@ -50,7 +50,7 @@ static inline float share_inside(float s)
 
 /* The blocks that have nodes within `reach` of a particle, at most two along each axis, as offsets into
    grid.at. Most particles have those of the one before. */
-typedef struct reached { int low[3], high[3], count; int64_t at[8]; } reached;
+typedef struct reached { unsigned low[3], high[3]; int count; int64_t at[8]; } reached;
 void view_find_blocks(const grid *s, const float place[3], float reach, reached *r);
 
 /* isosurface_drops.c: the node values between nodes; by how much more each particle must count, of sums not
