@@ -8,16 +8,20 @@
 
 /* Of the speed of a fall from the liquid's height; slower starts press less than the liquid at rest. */
 static const double JERK = 0.05;
+/* s, over which a motion is looked at. */
+static const double SOON = 1e-4;
 /* Spacings between liquid and wall that count as a gap, not as a place of its own. */
 static const double GAP_LEAST = 0.6, GAP_MOST = 4;
 
 static tobi_status note_jerk(tobi_world *w, tobi_body *b, tobi_error *err)
 {
-    double speed = 0;
+    double after = 0, twice = 0;
     char text[240];
-    TOBI_TRY(tobi_body_predict(b, 0, 1e-4, &speed, err));
+    TOBI_TRY(tobi_body_predict(b, 0, 2*SOON, &twice, err));
+    TOBI_TRY(tobi_body_predict(b, 0, SOON, &after, err));
+    const double speed = 2*after - twice;            /* at once: an acceleration adds to the means */
     if (b->rigid.kind != TOBI_PRESCRIBED || w->system[0].start_speed > 0) return TOBI_OK;
-    if (!(speed > JERK*sqrt(2*w->system[0].start_head))) return TOBI_OK;
+    if (!(speed > fmax(JERK*sqrt(2*w->system[0].start_head), JERK*after))) return TOBI_OK;
     snprintf(text, sizeof text, "sets off at %.3g m/s: the force of the first step is an impulse over "
              "the time step; let the motion begin at rest\n", speed);
     return tobi_world_add_notes(w, "body", b->name, text, err);
