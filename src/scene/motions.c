@@ -44,7 +44,7 @@ static const tobi_param translation_rows[] = {
 static const tobi_param rotation_rows[] = {
     { .key = "centre", VEC3, AT(tobi_rotation_def, center), PLACE, .unit = "m", .required = true,
       .doc = "A point on the axis." },
-    { .key = "axis", VEC3, AT(tobi_rotation_def, axis), DIRECTION, .unit = "1", .required = true,
+    { .key = "axis", VEC3, AT(tobi_rotation_def, axis), DIRECTION, .unit = "1", .def = { 0, 0, 1 },
       .doc = "Direction of the axis, of any length." },
     { .key = "rate", REAL, AT(tobi_rotation_def, rate), RANGE(-1e9, 1e9),
       .unit = "degrees/s", .required = true,
@@ -180,6 +180,44 @@ const tobi_param_table *tobi_motion_table(int index)
     return index >= 0 && index < TABLE_COUNT ? &tables[index] : NULL;
 }
 
+/* The motions that have the key, as "translation, rotation". */
+static void list_owners(const char *key, char *text, size_t size)
+{
+    size_t used = 0;
+    *text = '\0';
+    for (int i = 0; i < TABLE_COUNT; i++)
+        for (const tobi_param *row = tables[i].rows; row->key && used < size; row++)
+            if (strcmp(row->key, key) == 0)
+                used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "", tables[i].name);
+}
+
+static int is_motion(const char *name)
+{
+    for (int i = 0; name && i < TABLE_COUNT; i++)
+        if (strcmp(name, tables[i].name) == 0) return 1;
+    return 0;
+}
+
+static void report_unknown(const tobi_binder *binder, const tobi_place *at, const json_t *value,
+                           const char *const *keys, int count, const char *all)
+{
+    const char *near = tobi_suggest(at->key, keys, (size_t)count), *text = json_string_value(value);
+    char owners[200];
+    if (tobi_report_pass(binder->source->report)) return;
+    list_owners(at->key, owners, sizeof owners);
+    if (is_motion(text))
+        tobi_source_mistake_at_key(binder->source, at, "unknown key; a motion is a key of its own: \"%s\": "
+                                   "{ ... }", text);
+    else if (*owners)
+        tobi_source_mistake_at_key(binder->source, at, "unknown key; it belongs into the object of %s",
+                                   owners);
+    else if (near)
+        tobi_source_mistake_at_key(binder->source, at, "unknown key; did you mean \"%s\"?", near);
+    else
+        tobi_source_mistake_at_key(binder->source, at, "unknown key; allowed here: %s; params with a script",
+                                   all);
+}
+
 /* Finds which motion the object is; reports unknown keys and none or several motions. */
 static const tobi_param_table *choose_table(const tobi_binder *binder, json_t *value,
                                             const tobi_place *place)
@@ -207,15 +245,7 @@ static const tobi_param_table *choose_table(const tobi_binder *binder, json_t *v
         }
         if (known || json_object_get(value, "script")) continue;     /* a script checks its own */
         unknown = 1;
-        if (tobi_report_pass(binder->source->report)) continue;
-        const char *near = tobi_suggest(key, keys, sizeof keys / sizeof keys[0]);
-        if (near)
-            tobi_source_mistake_at_key(binder->source, &at, "unknown key; did you mean \"%s\"?",
-                                       near);
-        else
-            tobi_source_mistake_at_key(binder->source, &at,
-                                       "unknown key; allowed here: %s; params with a script",
-                                       all);
+        report_unknown(binder, &at, member, keys, sizeof keys / sizeof keys[0], all);
     }
     if (count == 1) return chosen;
     if (count > 1 || !unknown)
