@@ -25,6 +25,9 @@ static const double SOFT_COURANT = 0.08;
 static const double STIFF_COURANT = 2;
 
 static const double FULL_SHIFT_STEP = 0.2, SHIFT_AT_REST = 0.1;
+/* Over what a gradient taken at the begin of the shift amplifies, by Lax and Wendroff: more than 1, as
+   particles are disordered, and the more the farther they go in a step: at least, and per spacing. */
+static const double SHIFT_DAMPING = 2, SHIFT_DAMPING_OF_WAY = 15;
 
 static void launch(tobi_system *s, isph *m, tobi_kernel k, double *totals)
 {
@@ -89,10 +92,11 @@ double isph_choose_dt(tobi_system *s)
 
 /* Still liquid needs less of the shift, which would stir it: all of it where the fastest particle or body
    goes FULL_SHIFT_STEP spacings in a step. */
-static double share_of_shift(const tobi_system *s, const isph *m)
+static void choose_shift(const tobi_system *s, isph *m)
 {
-    const double speed = fmax(m->memory.speed, s->sim->body_speed);
-    return fmax(SHIFT_AT_REST, fmin(speed*s->dt/(FULL_SHIFT_STEP*s->smoothing.spacing), 1));
+    const double way = fmax(m->memory.speed, s->sim->body_speed)*s->dt/s->smoothing.spacing;
+    m->solver.view.shifting = m->def.shifting*fmax(SHIFT_AT_REST, fmin(way/FULL_SHIFT_STEP, 1));
+    m->solver.view.shift_damping = fmax(SHIFT_DAMPING, SHIFT_DAMPING_OF_WAY*way);
 }
 
 static void bind_soft(const tobi_system *s, isph_view *v)
@@ -116,7 +120,7 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     m->solver.view.held = NULL;
     m->solver.view.open = m->solver.view.fades = m->memory.vessel != SPH_VESSEL_FULL;
     m->solver.view.motion_dt = fmax(m->motion_dt, s->dt);
-    m->solver.view.shifting = m->def.shifting*share_of_shift(s, m);
+    choose_shift(s, m);
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, clock, err));
     TOBI_TRY(isph_solver_bind(&m->solver, s, err));
     TOBI_TRY(isph_bodies_find_mirrors(&m->solver, s, err));
@@ -167,7 +171,7 @@ static void find_geometry(tobi_system *s, isph *m, double *totals)
     if (m->def.surface_rule == TOBI_SURFACE_CONE) launch(s, m, m->kernel->isph_geometry, NULL);
     if (m->solver.view.by_mark) launch(s, m, m->kernel->isph_mark, NULL);
     launch(s, m, m->kernel->isph_geometry, totals);
-    if (m->solver.view.second_order) launch(s, m, m->kernel->isph_invariant, NULL);
+    if (m->solver.view.keeps_volume) launch(s, m, m->kernel->isph_invariant, NULL);
 }
 
 tobi_status isph_begin(tobi_system *s, tobi_error *err)
@@ -177,6 +181,7 @@ tobi_status isph_begin(tobi_system *s, tobi_error *err)
     isph_view *v = &m->solver.view;
     sph_use_dt(s, &m->view);
     v->second_order = is_second_order(s, m);
+    v->keeps_volume = m->def.time_order > 1;
     v->way = v->second_order ? 0.5*s->dt : s->dt;
     if (v->second_order) TOBI_TRY(drift(s, m, &clock, err));
     for (int k = 0; k < s->sim->body_count; k++)

@@ -44,9 +44,6 @@
 #define ISPH_CORE 0.8f
 #define ISPH_PUSH 0.25f
 #define ISPH_SHIFT_MAX 0.1
-/* Over what a gradient taken at the begin of the shift amplifies, by Lax and Wendroff: 1 is not enough where
-   particles are disordered. */
-#define ISPH_SHIFT_DAMPING 2.0
 /* The same in full vessels, where only particles that are next to alone in a cavity are a surface. */
 #define ISPH_CAVITY_BEGIN 0.6
 #define ISPH_CAVITY_OPEN 0.8
@@ -353,7 +350,7 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     const double excess = isph_excess(v, loss, whole, v->gate[i])/isph_density_of(v, i);
     const double diagonal = t.x - t.y - a->bodies + excess;
     v->source[i] = isph_volume_source(v, i, -v->slope*t.w) + t.z + v->density/v->dt*v->slope*t.w;
-    if (v->second_order) v->source[i] += 0.5*v->density*v->invariant[i];
+    if (v->keeps_volume) v->source[i] += 0.5*v->density*v->invariant[i];
     v->excess[i] = excess;
     v->inverse_diagonal[i] = diagonal > 0 ? 1/diagonal : 0;
     v->solution[i] = v->keep*v->pressure[i] + (1 - v->keep)*v->base;
@@ -566,7 +563,7 @@ TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s,
     const double most = ISPH_SHIFT_MAX*d, keep = size > most*most ? most/sqrt(size) : 1;
     const double part = v->open && full < ISPH_DROP ? 0 : keep;
     isph_apply(&v->inverse[i], x, along);
-    const double damping = ISPH_SHIFT_DAMPING*part*v->slope*
+    const double damping = v->shift_damping*part*v->slope*
                            (along[0]*along[0] + along[1]*along[1] + along[2]*along[2]);
     for (int a = 0; a < 3; a++) {
         const double change = g[3*a]*along[0] + g[3*a + 1]*along[1] + g[3*a + 2]*along[2] +

@@ -1,5 +1,5 @@
-/* Kernels of isph for a step of second order in time: the first half of the way, and the invariant of the
-   velocity's gradient that the divergence makes up for. */
+/* Kernels of isph for time: the first half of the way in a step of second order, and the invariant of the
+   velocity's gradient that the divergence makes up for. Rows that see soft solids go without. */
 #pragma once
 #include "sph/isph.k.h"
 
@@ -51,5 +51,5 @@ TOBI_FN void isph_invariant_finish(const isph_view *v, int64_t i, isph_invariant
     }
     for (int b = 0; b < v->dimension; b++)
         for (int c = 0; c < v->dimension; c++) sum += g[3*b + c]*g[3*c + b];
-    v->invariant[i] = v->trace[i] < ISPH_DROP*v->dimension ? 0 : (float)sum;
+    v->invariant[i] = v->trace[i] < ISPH_DROP*v->dimension || isph_soft_last(v, i) >= 0 ? 0 : (float)sum;
 }

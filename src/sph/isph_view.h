@@ -49,7 +49,9 @@ typedef struct isph_view {
     double way;                      /* s: of the motion after the pressure: dt, or dt/2            */
     int fades;                       /* 1: the shift loses its part along n below a surface         */
     int second_order;                /* 1: the list is that of the middle of the step               */
+    int keeps_volume;                /* 1: the source has eq. (6b)                                  */
     double volume_gain, shifting;    /* parameters                                                  */
+    double shift_damping;            /* 1: the factor of eq. (10a)                                  */
     double keep;                     /* 1: share of the last pressure that a solve starts from       */
     double base;                     /* Pa: what it takes in place of the rest                       */
     double mean, carry, gain;        /* Pa/m2, 1, 1: of a sweep, eisph.k.h                           */
@@ -96,7 +98,7 @@ typedef struct isph_view {
     float *scale;                    /* 1: kappa                                                    */
     float *concentration;            /* 1: kernel sum, 1 on the lattice                             */
     tobi_float4 *concentration_gradient; /* 1/m: sum of V grad W; w: eq. (10b)                      */
-    float *invariant;                /* 1/s2: tr (grad v grad v), in steps of second order          */
+    float *invariant;                /* 1/s2: tr (grad v grad v), eq. (6b)                          */
     /* the matrix */
     float *entry;                    /* 1/m2: a of each entry of the list                           */
     double *excess, *inverse_diagonal;     /* 1/m2, m2                                              */

@@ -76,6 +76,7 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
                        .slope = c->slope,
                        .shape = shape, .full = 2*c->rate, .inverse_h = (float)(1/pool.h), .density = 1000,
                        .dt = 1e-3, .motion_dt = 2e-3, .way = 5e-4, .second_order = 1,
+                       .keeps_volume = 1, .shift_damping = 2,
                        .surface_row = 1.2, .surface_force = 1.1, .volume_gain = 0.1, .shifting = 0.5,
                        .keep = 0.9, .mean = 3, .carry = 0.4, .gain = 0.7,
                        .volume_sum = 1, .by_count = 1, .lattice_count = dimension == 3 ? 56 : 20,

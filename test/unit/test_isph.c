@@ -222,6 +222,52 @@ static void a_body_that_stops_leaves_water_that_moves(void **state)
     tobi_motion_free(motion);
 }
 
+/* A paddle stirs a full vessel and stops; what goes on is slowed by viscosity and by nothing sped up. */
+static void stir(double spacing)
+{
+    tobi_world *world;
+    tobi_motion *motion;
+    tobi_step_info info;
+    tobi_world_def w = make_def(0.4);
+    tobi_body_def paddle = tobi_default_body_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    double before = 0;
+    w.gravity[1] = 0;
+    w.domain_max[1] = 0.4;
+    w.spacing = spacing;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    fill.box_max[0] = fill.box_max[1] = 0.4;
+    OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+    OK(tobi_motion_rotation((double[3]){ 0.2, 0.2, 0 }, (double[3]){ 0, 0, 1 }, 180, &motion, &err));
+    OK(tobi_motion_set_times(motion, 0, 1, 0.2, &err));
+    paddle.name = "paddle";
+    paddle.box_min[0] = 0.12;
+    paddle.box_max[0] = 0.28;
+    paddle.box_min[1] = 0.19;
+    paddle.box_max[1] = 0.21;
+    paddle.motion = tobi_motion_positions;
+    paddle.motion_user = motion;
+    paddle.motion_rigid = 1;
+    OK(tobi_world_add_body(world, &paddle, &err));
+    for (double t = 0; t < 5; t += info.dt) {
+        OK(tobi_world_step(world, 0, &info, &err));
+        if (t < 1.05) before = info.kinetic_energy;
+        assert_true(info.kinetic_energy <= 1.02*before || t < 1.05);
+    }
+    assert_true(info.kinetic_energy > 0.3*before);
+    tobi_world_destroy(world);
+    tobi_motion_free(motion);
+}
+
+static void stirred_water_gains_no_energy(void **state)
+{
+    (void)state;
+    stir(0.0125);
+    stir(0.01);
+    stir(0.008);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -232,6 +278,7 @@ int main(void)
         cmocka_unit_test(a_failed_solve_is_told),
         cmocka_unit_test(solves_converge_around_an_odd_grid),
         cmocka_unit_test(a_body_that_stops_leaves_water_that_moves),
+        cmocka_unit_test(stirred_water_gains_no_energy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
