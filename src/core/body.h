@@ -35,6 +35,8 @@ enum { TOBI_SYSTEM_LIMIT = 2 };
 enum { TOBI_DRY, TOBI_WET, TOBI_WET_GAP };
 #define TOBI_COVERED 16777216.0
 #define TOBI_OUTERMOST 1e-4
+/* Of the spacing of quadrature points, half that of the particles. */
+#define TOBI_THICK 1.8
 
 typedef struct tobi_body {
     char name[64];
@@ -92,6 +94,7 @@ typedef struct tobi_body {
                                         TOBI_OUTERMOST spacings above the point's tangent plane */
     int convex;                      /* 1: it is rigid, and its mesh convex: where it is nearest to a point
                                         outside, the plane across the way there has no part of it above */
+    int thick;                       /* 1: it is rigid, and no part of it is thinner than TOBI_THICK */
     double *area, *weight;           /* |sum of area vectors|, sum of areas                    */
 
     double (*particle_rest)[3];      /* body particles, rest pose, world coordinates           */
@@ -116,7 +119,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
 void tobi_body_free(tobi_body *b);
 /* 1 if any of the bodies is free or controlled. */
 int tobi_body_any_free(const tobi_body *bodies, int count);
-/* Fills `outermost` and `convex` of a body that has just been placed. outline.c */
+/* Fills `outermost`, `convex` and `thick` of a body that has just been placed. outline.c */
 void tobi_body_find_outline(tobi_body *b, double point_spacing);
 /* Builds rest_vertex and rest_bvh, for queries in the body's own axes, if they are not there yet. */
 tobi_status tobi_body_build_rest(tobi_body *b, tobi_error *err);

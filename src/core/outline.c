@@ -1,6 +1,7 @@
-/* Where nothing of a body can lie between a point of its surface and what looks at it. Found once, in the
-   pose that the body starts in, and kept by every rigid motion: the sums over surface points then need no
-   line of sight. Drawback: one round of queries through the mesh for each point and each triangle. */
+/* Where nothing of a body can lie between a point of its surface and what looks at it, and whether it has
+   thin parts. Found once, in the pose that the body starts in, and kept by every rigid motion: the sums over
+   surface points then need no line of sight. Drawback: one round of queries through the mesh for each point
+   and each triangle. */
 #include "core/body.h"
 #include "geom/vec3.h"
 
@@ -51,10 +52,24 @@ static int is_convex(const tobi_body *b, double point_spacing)
     return 1;
 }
 
+/* Nothing of the surface lies less than TOBI_THICK behind a point: a body that has no thin part. */
+static int is_thick(const tobi_body *b, double point_spacing)
+{
+    for (int64_t k = 0; k < b->point_count; k++) {
+        double from[3], to[3];
+        if (!(b->area[k] > 0)) continue;
+        vec3_add_scaled(from, b->point[k], -0.2*point_spacing, b->normal[k]);
+        vec3_add_scaled(to, b->point[k], -TOBI_THICK*point_spacing, b->normal[k]);
+        if (tobi_bvh_segment_hits(b->bvh, from, to)) return 0;
+    }
+    return 1;
+}
+
 void tobi_body_find_outline(tobi_body *b, double point_spacing)
 {
     if (b->deforms) return;
     b->convex = is_convex(b, point_spacing);
+    b->thick = is_thick(b, point_spacing);
     for (int64_t k = 0; k < b->point_count; k++)
         b->outermost[k] = b->area[k] > 0 && !tobi_bvh_rises_above(b->bvh, b->point[k], b->normal[k],
                                                                   TOBI_OUTERMOST*point_spacing);

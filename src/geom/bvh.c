@@ -367,7 +367,7 @@ static inline void project(const sight *s, const double vertex[3], double out[2]
 /* The line meets the triangle, edges included, if it lies on one side of all three projected edges
    (Woop, Benthin & Wald, JCGT 2 (2013)). Rounding is monotonic, so the difference of two products
    has the right sign or is 0, and 0 counts as met: nothing slips between neighbours. Needs products
-   that are not contracted into fused operations. */
+   that are not contracted into fused operations. 1 where the segment enters, -1 where it leaves, 0 else. */
 static int crosses(const bvh_corners *t, const sight *s)
 {
     double a[2], b[2], c[2], ab[3], ac[3], n[3], u[3], v[3];
@@ -382,7 +382,7 @@ static int crosses(const bvh_corners *t, const sight *s)
     vec3_sub(u, t->a, s->from);
     vec3_sub(v, t->a, s->to);
     double before = vec3_dot(n, u), behind = vec3_dot(n, v);
-    return (before < 0 && behind > 0) || (before > 0 && behind < 0);
+    return (before < 0 && behind > 0) - (before > 0 && behind < 0);
 }
 
 /* Bit per lane: may the segment with middle m, half vector h and |h| touch the box? Separating axes:
@@ -406,7 +406,11 @@ static inline int touch_boxes(const bvh_node *node, const float m[3], const floa
     return (apart[0] ? 0 : 1) | (apart[1] ? 0 : 2) | (apart[2] ? 0 : 4) | (apart[3] ? 0 : 8);
 }
 
-int tobi_bvh_segment_hits(const tobi_bvh *b, const double p[3], const double q[3])
+/* What a segment that meets a triangle makes of it, turn as from crosses; nonzero ends the walk. */
+typedef int crossing_fn(void *user, int32_t triangle, int turn);
+
+static inline int walk_segment(const tobi_bvh *b, const double p[3], const double q[3], crossing_fn *visit,
+                               void *user)
 {
     int32_t stack[BVH_STACK];
     int top = 0;
@@ -425,10 +429,60 @@ int tobi_bvh_segment_hits(const tobi_bvh *b, const double p[3], const double q[3
         for (int lane = 0; lane < BVH_WIDTH; lane++) {
             if (!(mask >> lane & 1) || node->child[lane] < 0) continue;
             if (node->count[lane] == 0) stack[top++] = node->child[lane];
-            for (int32_t i = node->child[lane]; i < node->child[lane] + node->count[lane]; i++)
-                if (crosses(&b->corners[i], &line)) return 1;
+            for (int32_t i = node->child[lane]; i < node->child[lane] + node->count[lane]; i++) {
+                const int turn = crosses(&b->corners[i], &line);
+                if (turn && visit(user, b->leaf_triangle[i], turn)) return 1;
+            }
         }
     }
+    return 0;
+}
+
+static int stop_at_first(void *user, int32_t triangle, int turn)
+{
+    (void)user;
+    (void)triangle;
+    (void)turn;
+    return 1;
+}
+
+int tobi_bvh_segment_hits(const tobi_bvh *b, const double p[3], const double q[3])
+{
+    return walk_segment(b, p, q, stop_at_first, NULL);
+}
+
+/* The faces that a segment enters and leaves by. */
+enum { MOST_FACES = 8 };
+typedef struct passage {
+    const tobi_bvh *b;
+    double cosine;
+    int count[2];
+    const double *normal[2][MOST_FACES];
+} passage;
+
+/* Stops at two faces that look away from each other, and where there are more than can be kept. */
+static int add_face(void *user, int32_t triangle, int turn)
+{
+    passage *p = user;
+    const int leaves = turn < 0;
+    const double *n = p->b->face_normal[triangle];
+    for (int k = 0; k < p->count[!leaves]; k++)
+        if (vec3_dot(n, p->normal[!leaves][k]) < p->cosine) return 1;
+    if (p->count[leaves] == MOST_FACES) return 1;
+    p->normal[leaves][p->count[leaves]++] = n;
+    return 0;
+}
+
+int tobi_bvh_segment_passes(const tobi_bvh *b, const double p[3], const double q[3],
+                            const double normal_p[3], const double normal_q[3], double cosine)
+{
+    passage faces = {.b = b, .cosine = cosine};
+    if (walk_segment(b, p, q, add_face, &faces)) return 1;
+    if ((faces.count[0] > 0) == (faces.count[1] > 0)) return 0;
+    const int leaves = faces.count[1] > 0;
+    const double *end = leaves ? normal_p : normal_q;
+    for (int k = 0; k < faces.count[leaves]; k++)
+        if (vec3_dot(end, faces.normal[leaves][k]) < cosine) return 1;
     return 0;
 }
 

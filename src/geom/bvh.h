@@ -61,6 +61,11 @@ void tobi_bvh_look_up(const tobi_bvh *bvh, const double p[3], tobi_bvh_crossing_
    of a triangle, is no hit. Neighbouring triangles decide about their common edge with the same
    arithmetic, so nothing slips through an edge. */
 int tobi_bvh_segment_hits(const tobi_bvh *bvh, const double a[3], const double b[3]);
+/* 1 if the segment from a to b goes through the surface, not just past an edge: the normals of a face that
+   it enters by and of one that it leaves by have a cosine below `cosine`. If an end lies on the surface or
+   behind it, the unit normal there counts for the face that is missing. */
+int tobi_bvh_segment_passes(const tobi_bvh *bvh, const double a[3], const double b[3],
+                            const double normal_a[3], const double normal_b[3], double cosine);
 
 /* 1 if a corner of a triangle lies more than `height` (m) above the plane through p across the unit vector
    normal. */

@@ -17,6 +17,7 @@ typedef struct sph_state {
     int marked;                     /* 1: the `held` of particles is that of the present rows       */
     tobi_float4 normal[TOBI_OPENING_LIMIT];      /* of openings                                     */
     int mirrors;                    /* 1: walls are mirrors (isph), 0: integrals of the kernel          */
+    int past_edges;                 /* 1: pairs past blunt edges of bodies stay, boundary_pairs.c     */
 } sph_state;
 
 static inline sph_state *sph_of(const tobi_system *s) { return s->state; }

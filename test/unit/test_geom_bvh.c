@@ -252,6 +252,37 @@ static void nothing_slips_through_edges(void **state)
     tobi_mesh_free(&mesh);
 }
 
+static void past_an_edge_is_not_through(void **state)
+{
+    (void)state;
+    static const double up[3] = {0, 0, 1}, down[3] = {0, 0, -1}, side[3] = {1, 0, 0};
+    static const struct {
+        double a[3], b[3];
+        const double *normal_a, *normal_b;
+        double cosine;
+        int passes;
+    } way[] = {
+        {{0.8, 0.1, 1.05}, {1.1, 0.2, 0.9}, up, side, -0.25, 0},       /* past an edge of 90 degrees */
+        {{0.8, 0.1, 1.05}, {1.1, 0.2, 0.9}, up, side, 0.25, 1},
+        {{0.1, 0.1, 1.1}, {0.2, 0.3, -1.1}, up, down, -0.25, 1},       /* top to bottom */
+        {{0.8, 0.1, 1}, {1.1, 0.2, 0.9}, up, side, -0.25, 0},         /* from the face itself */
+        {{0.9, 0.1, 0.9}, {1.1, 0.2, 0.9}, up, side, -0.25, 0},       /* from behind it */
+        {{0.1, 0.1, 1}, {0.2, 0.3, -1.1}, up, down, -0.25, 1},
+        {{0.1, 0.1, 1.1}, {0.2, 0.3, -1}, up, down, -0.25, 1},
+        {{0.1, 0.1, 1.1}, {1.2, 0.3, 1.1}, up, side, -0.25, 0},        /* beside it */
+    };
+    tobi_mesh mesh = make_cube(1);
+    tobi_bvh *bvh = build_tree(&mesh);
+    for (size_t k = 0; k < sizeof way/sizeof *way; k++) {
+        assert_int_equal(tobi_bvh_segment_passes(bvh, way[k].a, way[k].b, way[k].normal_a, way[k].normal_b,
+                                                 way[k].cosine), way[k].passes);
+        assert_int_equal(tobi_bvh_segment_passes(bvh, way[k].b, way[k].a, way[k].normal_b, way[k].normal_a,
+                                                 way[k].cosine), way[k].passes);
+    }
+    tobi_bvh_free(bvh);
+    tobi_mesh_free(&mesh);
+}
+
 static void touching_is_no_crossing(void **state)
 {
     (void)state;
@@ -370,6 +401,7 @@ int main(void)
         cmocka_unit_test(far_points_and_odd_numbers),
         cmocka_unit_test(segments_agree_with_brute_force),
         cmocka_unit_test(nothing_slips_through_edges),
+        cmocka_unit_test(past_an_edge_is_not_through),
         cmocka_unit_test(touching_is_no_crossing),
         cmocka_unit_test(refit_follows_the_mesh),
         cmocka_unit_test(same_bits_for_any_number_of_threads),

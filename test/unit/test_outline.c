@@ -105,6 +105,22 @@ static void sees_along_convex_bodies(void **state)
     rig_close(&g);
 }
 
+/* Surfaces of 0.8 spacings and less between two faces are thin; the rig's spacing is 1. */
+static void tells_thick_from_thin(void **state)
+{
+    (void)state;
+    static const double middle[3] = { 10, 10, 10 }, none[3] = { 0, 0, 0 };
+    static const double side[4][3] = { { 2, 3, 1 }, { 2, 3, 0.8 }, { 0.5, 3, 3 }, { 4, 4, 4 } };
+    rig g;
+    rig_open(&g, 20, none);
+    for (int k = 0; k < 4; k++) assert_int_equal(rig_box(&g, rig_def(), side[k], middle)->thick, k%3 == 0);
+    tobi_body_def def = rig_def();
+    def.sphere_radius = 1;
+    for (int a = 0; a < 3; a++) def.sphere_centre[a] = 10;
+    assert_true(rig_add(&g, &def)->thick);
+    rig_close(&g);
+}
+
 /* Of a ring the outer half is outermost at most. */
 static void asks_in_a_ring(void **state)
 {
@@ -128,6 +144,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sees_along_convex_bodies),
+        cmocka_unit_test(tells_thick_from_thin),
         cmocka_unit_test(asks_in_a_ring),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
