@@ -330,7 +330,7 @@ static void motions_one_at_a_time(void **state)
         { "{ \"rotatoin\": { } }", "motion.rotatoin: ", "did you mean \"rotation\"?" },
         { "{ \"quantum\": { } }", "motion.quantum: ",
           "unknown key; allowed here: script, translation, rotation, oscillation" },
-        { "{ \"type\": \"rotation\" }", "motion.type: ", "a motion is a key of its own: \"rotation\"" },
+        { "{ \"type\": \"yaw\" }", "motion.type: ", "a motion is a key of its own: \"yaw\": { ... }" },
         { "{ \"translation\": { \"velocity\": [1, 0, 0] }, \"params\": { } }", "motion.params: ",
           "params belong to a script; translation takes none" },
         { "{ \"translation\": { }, \"rotation\": { } }", "motion: ", "must have exactly one of" },

@@ -121,6 +121,7 @@ static void mistakes_are_told(void **state)
     expect(2, "[]", "s.json:5:11: bodies[0].motion: has 0 motions, allowed are 1 to 16");
     expect(2, "[ { \"heave\": { \"amplitude\": 1, \"period\": 1 } } ]",
            "s.json:5:15: bodies[0].motion[0].heave: leaves the plane of a 2-D scene, which has surge, sway");
+    expect(2, "{ \"rate\": 3 }", "motion.rate: unknown key; it belongs into the object of rotation");
     expect(2, "{ \"roll\": { \"amplitude\": 1, \"period\": 1 } }", "leaves the plane");
     expect(2, "{ \"pitch\": { \"amplitude\": 1, \"period\": 1 } }", "leaves the plane");
     expect(2, "{ \"sway\": { \"amplitude\": 1 } }", "bodies[0].motion.sway.period: is missing");
