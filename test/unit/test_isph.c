@@ -189,6 +189,20 @@ static void solves_converge_around_an_odd_grid(void **state)
     tobi_world_destroy(world);
 }
 
+static void add_driven_box(tobi_world *world, const double low[2], const double high[2], tobi_motion *motion)
+{
+    tobi_body_def body = tobi_default_body_def();
+    body.name = "driven";
+    for (int a = 0; a < 2; a++) {
+        body.box_min[a] = low[a];
+        body.box_max[a] = high[a];
+    }
+    body.motion = tobi_motion_positions;
+    body.motion_user = motion;
+    body.motion_rigid = 1;
+    OK(tobi_world_add_body(world, &body, &err));
+}
+
 /* Without gravity the speed of the run is that of its bodies, and water goes on when they stop. */
 static void a_body_that_stops_leaves_water_that_moves(void **state)
 {
@@ -196,22 +210,13 @@ static void a_body_that_stops_leaves_water_that_moves(void **state)
     tobi_world *world;
     tobi_motion *motion;
     tobi_world_def w = make_def(0.3);
-    tobi_body_def plate = tobi_default_body_def();
     w.gravity[1] = 0;
     w.domain_max[1] = 0.15;
     OK(tobi_world_create(&w, NULL, &world, &err));
     add_water(world);
     OK(tobi_motion_translation((double[3]){ 0.2, 0, 0 }, &motion, &err));
     OK(tobi_motion_set_times(motion, 0, 0.2, 0.02, &err));
-    plate.name = "plate";
-    plate.box_min[0] = 0.1;
-    plate.box_max[0] = 0.12;
-    plate.box_min[1] = 0.04;
-    plate.box_max[1] = 0.11;
-    plate.motion = tobi_motion_positions;
-    plate.motion_user = motion;
-    plate.motion_rigid = 1;
-    OK(tobi_world_add_body(world, &plate, &err));
+    add_driven_box(world, (double[2]){ 0.1, 0.04 }, (double[2]){ 0.12, 0.11 }, motion);
     for (double t = 0; t < 0.3; t += 0.01) {
         tobi_step_info info;
         OK(tobi_world_step(world, 0.01, &info, &err));
@@ -229,7 +234,6 @@ static void stir(double spacing)
     tobi_motion *motion;
     tobi_step_info info;
     tobi_world_def w = make_def(0.4);
-    tobi_body_def paddle = tobi_default_body_def();
     tobi_fluid_def fluid = tobi_default_fluid_def();
     tobi_fill_def fill = tobi_default_fill_def();
     double before = 0;
@@ -241,15 +245,7 @@ static void stir(double spacing)
     OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
     OK(tobi_motion_rotation((double[3]){ 0.2, 0.2, 0 }, (double[3]){ 0, 0, 1 }, 180, &motion, &err));
     OK(tobi_motion_set_times(motion, 0, 1, 0.2, &err));
-    paddle.name = "paddle";
-    paddle.box_min[0] = 0.12;
-    paddle.box_max[0] = 0.28;
-    paddle.box_min[1] = 0.19;
-    paddle.box_max[1] = 0.21;
-    paddle.motion = tobi_motion_positions;
-    paddle.motion_user = motion;
-    paddle.motion_rigid = 1;
-    OK(tobi_world_add_body(world, &paddle, &err));
+    add_driven_box(world, (double[2]){ 0.12, 0.19 }, (double[2]){ 0.28, 0.21 }, motion);
     for (double t = 0; t < 5; t += info.dt) {
         OK(tobi_world_step(world, 0, &info, &err));
         if (t < 1.05) before = info.kinetic_energy;
@@ -268,6 +264,37 @@ static void stirred_water_gains_no_energy(void **state)
     stir(0.008);
 }
 
+static tobi_status jump(void *user, double t, int64_t n, const double (*rest)[3], double (*out)[3],
+                        tobi_error *err)
+{
+    (void)user, (void)err;
+    for (int64_t i = 0; i < n; i++)
+        for (int a = 0; a < 3; a++) out[i][a] = rest[i][a] + (a == 0 && t > 0.0503 ? 0.03 : 0);
+    return TOBI_OK;
+}
+
+/* No shorter step takes a jump apart: it stands in one that is as long as the others. */
+static void a_body_that_jumps_costs_few_steps(void **state)
+{
+    (void)state;
+    tobi_world *world;
+    tobi_step_info info;
+    tobi_world_def w = make_def(0.6);
+    tobi_body_def body = tobi_default_body_def();
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    add_water(world);
+    body.name = "gate";
+    body.box_min[0] = 0.3;
+    body.box_max[0] = 0.34;
+    body.box_max[1] = 0.3;
+    body.motion = jump;
+    body.motion_rigid = 1;
+    OK(tobi_world_add_body(world, &body, &err));
+    OK(tobi_world_advance(world, 0.1, &info, &err));
+    assert_true(info.step < 60);
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -279,6 +306,7 @@ int main(void)
         cmocka_unit_test(solves_converge_around_an_odd_grid),
         cmocka_unit_test(a_body_that_stops_leaves_water_that_moves),
         cmocka_unit_test(stirred_water_gains_no_energy),
+        cmocka_unit_test(a_body_that_jumps_costs_few_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
