@@ -323,7 +323,8 @@ int64_t tobi_boundary_links_bytes(const tobi_boundary_links *n)
            n->part_capacity*(int64_t)sizeof *n->part + n->caught_capacity*(int64_t)sizeof *n->caught +
            n->blocks_capacity*(int64_t)sizeof *n->caught_block +
            n->bins_capacity*(int64_t)sizeof *n->bins + n->start_capacity*(int64_t)sizeof *n->bin_start +
-           n->point_capacity*(int64_t)sizeof *n->point + n->row_capacity*(int64_t)sizeof *n->row +
+           n->point_capacity*(int64_t)(sizeof *n->point + TOBI_POINT_ROWS*sizeof **n->point_row) +
+           n->row_capacity*(int64_t)sizeof *n->row +
            n->found_capacity*(int64_t)sizeof *n->found + n->hit_capacity*(int64_t)sizeof *n->hit;
 }
 
@@ -340,6 +341,7 @@ void tobi_boundary_links_free(tobi_boundary_links *n)
     tobi_array_free(n->bins);
     tobi_array_free(n->bin_start);
     tobi_array_free(n->point);
+    for (int r = 0; r < TOBI_POINT_ROWS; r++) tobi_array_free(n->point_row[r]);
     tobi_array_free(n->row);
     tobi_array_free(n->found);
     tobi_array_free(n->hit);

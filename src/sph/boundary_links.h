@@ -5,6 +5,7 @@
 #include "sph/boundary_points.h"
 #include "sph/body_tree.h"
 #include "sph/couple.k.h"
+#include "sph/look_loops.h"
 
 /* Particles of a row of cells near a body. */
 typedef struct tobi_boundary_row { int32_t body, begin, end; int64_t hit; } tobi_boundary_row;
@@ -32,11 +33,14 @@ typedef struct tobi_boundary_links {
     double bin_width;         /* m                                                                */
     int32_t *bin_start;
     tobi_boundary_point *point;   /* of all bodies, by bin                                            */
+    double *point_row[TOBI_POINT_ROWS];     /* the same                                               */
+    const tobi_look_loops *loops;           /* for this machine                                       */
     tobi_boundary_row *row;
     int64_t row_count;
     int64_t *found;           /* [row_count] particles that see the body, then entries before     */
     int32_t *hit;             /* those particles                                                  */
     int64_t first_capacity, total_capacity, answer_capacity, part_capacity, caught_capacity, blocks_capacity;
+    int64_t row_room[TOBI_POINT_ROWS];
     int64_t bins_capacity, start_capacity, point_capacity, row_capacity, found_capacity;
     int64_t hit_capacity;
 } tobi_boundary_links;
