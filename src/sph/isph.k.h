@@ -347,8 +347,10 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     const tobi_float4 t = lane_sum4(a->sum, a->self, a->difference, a->divergence);
     const double loss = 1 - v->trace[i]/v->dimension;
     const double whole = v->phase ? lane_sum(a->whole) : t.x;
-    const double excess = isph_excess(v, loss, whole, v->gate[i])/isph_density_of(v, i);
-    const double diagonal = t.x - t.y - a->bodies + excess;
+    const double others = t.x - t.y - a->bodies;     /* rounding, of a drop that solids close in */
+    const double excess = others > 1e-6*v->full
+                        ? isph_excess(v, loss, whole, v->gate[i])/isph_density_of(v, i) : v->full;
+    const double diagonal = others + excess;
     v->source[i] = isph_volume_source(v, i, -v->slope*t.w) + t.z + v->density/v->dt*v->slope*t.w;
     if (v->keeps_volume) v->source[i] += 0.5*v->density*v->invariant[i];
     v->excess[i] = excess;
