@@ -47,7 +47,7 @@ static int sees_body(const tobi_system *s, int body, const double x[3])
 
 static int cell_along(const tobi_cells *c, int axis, double x)
 {
-    double k = floor(x*c->inverse[axis]);
+    const double k = x*c->inverse[axis];
     return k < 0 ? 0 : k >= c->n[axis] ? c->n[axis] - 1 : (int)k;
 }
 
@@ -66,12 +66,11 @@ static tobi_status add_row(tobi_system *s, int body, int64_t begin, int64_t end,
 static tobi_status list_rows(tobi_system *s, int body, int64_t *hits, tobi_error *err)
 {
     const tobi_cells *c = &s->cells;
-    double lo[3], hi[3];
+    const tobi_boundary_bins *box = &sph_of(s)->links.bins[body];
     int low[3], high[3];
-    tobi_bvh_box(s->sim->bodies[body].bvh, lo, hi);
     for (int a = 0; a < 3; a++) {
-        low[a] = cell_along(c, a, lo[a] - 1.001*s->smoothing.h);
-        high[a] = cell_along(c, a, hi[a] + 1.001*s->smoothing.h);
+        low[a] = cell_along(c, a, box->lower[a] - 1.001*s->smoothing.h);
+        high[a] = cell_along(c, a, box->upper[a] + 1.001*s->smoothing.h);
     }
     for (int k = low[1]/c->strip; k <= high[1]/c->strip; k++)
         for (int z = low[2]; z <= high[2]; z++)
@@ -84,8 +83,9 @@ static tobi_status list_rows(tobi_system *s, int body, int64_t *hits, tobi_error
 }
 
 /* Whether x is too far from a box for a point in it to be within h. */
-static int is_far(const tobi_system *s, const double lo[3], const double hi[3], const double x[3])
+static int is_far(const tobi_system *s, const tobi_boundary_bins *box, const double x[3])
 {
+    const double *lo = box->lower, *hi = box->upper;
     double square = 0;
     for (int a = 0; a < s->box.dimension; a++) {
         const double beyond = x[a] < lo[a] ? lo[a] - x[a] : x[a] > hi[a] ? x[a] - hi[a] : 0;
@@ -104,12 +104,10 @@ static void find_hits(const void *view, int64_t begin, int64_t end, double *tota
         const tobi_boundary_row *row = &n->row[r];
         int32_t *hit = n->hit + row->hit;
         int64_t found = 0;
-        double lo[3], hi[3];
-        tobi_bvh_box(s->sim->bodies[row->body].bvh, lo, hi);
         for (int32_t i = row->begin; i < row->end; i++) {
             const tobi_double3 at = s->particles.position[i];
             const double x[3] = {at.x, at.y, at.z};
-            if (!is_far(s, lo, hi, x) && sees_body(s, row->body, x)) hit[found++] = i;
+            if (!is_far(s, &n->bins[row->body], x) && sees_body(s, row->body, x)) hit[found++] = i;
         }
         n->found[r] = found;
     }

@@ -10,8 +10,12 @@
 /* Particles of a row of cells near a body. */
 typedef struct tobi_boundary_row { int32_t body, begin, end; int64_t hit; } tobi_boundary_row;
 
-/* The caught particles of a block. */
-typedef struct tobi_caught_block { double lower[3], upper[3]; int32_t count; } tobi_caught_block;
+/* The caught particles of a block. next: the next block with any, -1: none. */
+typedef struct tobi_caught_block {
+    double lower[3], upper[3];
+    int64_t next;
+    int32_t count;
+} tobi_caught_block;
 
 struct tobi_system;
 
@@ -27,6 +31,7 @@ typedef struct tobi_boundary_links {
     tobi_block_sum *part;     /* scratch of sums over the particles of each body                  */
     int32_t *caught;          /* [particles] of each block first those that bodies have caught    */
     tobi_caught_block *caught_block;
+    int64_t first_caught;     /* block                                                            */
     tobi_body_tree tree;
     /* scratch of the search */
     tobi_boundary_bins *bins;     /* [bodies + 1]                                                     */

@@ -9,7 +9,7 @@
 
 static int bin_along(const tobi_boundary_bins *c, double width, int a, double x)
 {
-    double k = floor((x - c->lower[a])/width);
+    const double k = (x - c->lower[a])/width;
     return k < 0 ? -1 : k >= c->n[a] ? c->n[a] : (int)k;
 }
 
@@ -34,6 +34,7 @@ static tobi_status plan_bins(tobi_system *s, tobi_error *err)
         tobi_bvh_box(s->sim->bodies[k].bvh, lo, hi);
         for (int a = 0; a < 3; a++) {
             c->lower[a] = lo[a];
+            c->upper[a] = hi[a];
             c->n[a] = a == 2 && s->box.dimension == 2
                           ? 1
                           : (int)fmin((hi[a] - lo[a]) / n->bin_width + 1, 4096);

@@ -17,7 +17,7 @@ enum { TOBI_POINT_ROWS = 6 };
 /* The cells of one body. */
 typedef struct tobi_boundary_bins {
     int n[3];
-    double lower[3];          /* m                                                                */
+    double lower[3], upper[3];    /* m, the body's box; in 2-D around its plane                    */
     double orientation[4];    /* of the body when its points were put here                        */
     int64_t start, item;      /* where its own begin in bin_start, point                          */
 } tobi_boundary_bins;
