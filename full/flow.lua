@@ -1,1 +1,0 @@
-function velocity(x, y, z) return 0, 0, 0 end

@@ -1,1 +1,0 @@
-function place(t) return 0, 0, 0 end
