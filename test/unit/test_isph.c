@@ -295,6 +295,36 @@ static void a_body_that_jumps_costs_few_steps(void **state)
     tobi_world_destroy(world);
 }
 
+/* Two liquids that change places in a closed vessel, where particles soon lie in disorder. */
+static void sides_carry_the_weight(void **state)
+{
+    (void)state;
+    tobi_world_def w = make_def(0.8);
+    tobi_world *world;
+    tobi_step_info info;
+    double worst = 0;
+    w.domain_max[1] = 0.2;
+    w.spacing = 0.02;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    for (int k = 0; k < 2; k++) {
+        tobi_fluid_def fluid = tobi_default_fluid_def();
+        tobi_fill_def fill = tobi_default_fill_def();
+        fluid.name = k ? "fresh" : "salt";
+        fluid.density = k ? 1000 : 1200;
+        fill.box_min[0] = 0.4*k;
+        fill.box_max[0] = 0.4*(k + 1);
+        fill.box_max[1] = 0.2;
+        OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+    }
+    for (int step = 0; step < 200; step++) {
+        OK(tobi_world_step(world, 0, &info, &err));
+        worst = fmax(worst, fabs(info.wall_force[1]/info.weight + 1));
+    }
+    assert_true(info.kinetic_energy > 1);
+    if (!(worst < 0.005)) fail_msg("the force on the sides is off by %g of the weight", worst);
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -307,6 +337,7 @@ int main(void)
         cmocka_unit_test(a_body_that_stops_leaves_water_that_moves),
         cmocka_unit_test(stirred_water_gains_no_energy),
         cmocka_unit_test(a_body_that_jumps_costs_few_steps),
+        cmocka_unit_test(sides_carry_the_weight),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
