@@ -26,12 +26,9 @@ tobi_status tobi_boundary_grow_rows(void **p, int64_t *capacity, int64_t need, s
 /* Whether a particle at x sees one of the points. */
 static int sees_any(const tobi_system *s, tobi_point_run run, const double x[3])
 {
+    const tobi_boundary_links *n = &sph_of(s)->links;
     const double h = s->smoothing.h;
-    for (const tobi_boundary_point *p = run.begin; p < run.end; p++) {
-        const double r[3] = {x[0] - p->at[0], x[1] - p->at[1], x[2] - p->at[2]};
-        if (dot(r, r) < h*h && p->area > 0 && dot(r, p->normal) > 0) return 1;
-    }
-    return 0;
+    return n->loops->any(n->point_row, run.begin - n->point, run.end - n->point, x, h*h);
 }
 
 /* Whether x sees a point of the body: most likely one in its own or the nearest bin. */
@@ -113,17 +110,30 @@ static void find_hits(const void *view, int64_t begin, int64_t end, double *tota
     }
 }
 
+static void fill_row(const tobi_system *s, int64_t r, int alone)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    const tobi_boundary_row *row = &n->row[r];
+    const int64_t stop = r + 1 < n->row_count ? n->found[r + 1] : n->count;
+    const int32_t *hit = n->hit + row->hit;
+    for (int64_t k = n->found[r]; k < stop; k++)
+        tobi_boundary_look(s, *hit++, row->body, alone, &n->link[k], &n->entry[k]);
+}
+
+/* The rows of a body that few particles see are one piece of work, that of its first row: its points then
+   need no locked sums. */
 static void fill_entries(const void *view, int64_t begin, int64_t end, double *totals)
 {
+    enum { FEW = 4*TOBI_BLOCK };
     const tobi_system *s = view;
     const tobi_boundary_links *n = &sph_of(s)->links;
     (void)totals;
     for (int64_t r = begin; r < end; r++) {
-        const tobi_boundary_row *row = &n->row[r];
-        const int64_t stop = r + 1 < n->row_count ? n->found[r + 1] : n->count;
-        const int32_t *hit = n->hit + row->hit;
-        for (int64_t k = n->found[r]; k < stop; k++)
-            tobi_boundary_look(s, *hit++, row->body, &n->link[k], &n->entry[k]);
+        const int32_t body = n->row[r].body;
+        const int alone = n->first[body + 1] - n->first[body] <= FEW;
+        if (!alone) fill_row(s, r, 0);
+        else if (r == 0 || n->row[r - 1].body != body)
+            for (int64_t k = r; k < n->row_count && n->row[k].body == body; k++) fill_row(s, k, 1);
     }
 }
 

@@ -78,7 +78,7 @@ static int find_foot(const look *l)
     return 1;
 }
 
-void tobi_boundary_look(const tobi_system *s, int32_t i, int body, tobi_boundary_link *link,
+void tobi_boundary_look(const tobi_system *s, int32_t i, int body, int alone, tobi_boundary_link *link,
                         tobi_boundary_entry *entry)
 {
     const tobi_boundary_links *n = &sph_of(s)->links;
@@ -87,6 +87,7 @@ void tobi_boundary_look(const tobi_system *s, int32_t i, int body, tobi_boundary
     l.s = s;
     l.view.body = &s->sim->bodies[body];
     l.view.smoothing = &s->smoothing;
+    l.view.alone = alone;
     memcpy(l.x, &at, sizeof l.x);
     l.link = link;
     l.entry = entry;

@@ -51,27 +51,77 @@ static inline unsigned bits(four_int m)
 #endif
 }
 
+/* The rows and the place, where the compiler sees that no list overwrites them. */
+typedef struct field { const double *x, *y, *z, *nx, *ny, *nz; double at[3], reach2; } field;
+
+static inline field open_field(double *const row[TOBI_POINT_ROWS], const double x[3], double reach2)
+{
+    return (field){row[0], row[1], row[2], row[3], row[4], row[5], {x[0], x[1], x[2]}, reach2};
+}
+
+/* Bit per point of k to k + 3, as many as lie before the end: it faces the place within reach. */
+static inline unsigned test(const field *f, int64_t k, int64_t end, four *square, four *height)
+{
+    const four rx = f->at[0] - load(f->x + k), ry = f->at[1] - load(f->y + k), rz = f->at[2] - load(f->z + k);
+    *height = rx*load(f->nx + k) + ry*load(f->ny + k) + rz*load(f->nz + k);
+    *square = rx*rx + ry*ry + rz*rz;
+    const unsigned m = bits((*square < f->reach2) & (*height > 0));
+    return end - k < 4 ? m & ((1u << (end - k)) - 1) : m;
+}
+
 static void list_points(double *const row[TOBI_POINT_ROWS], int64_t begin, int64_t end, const double x[3],
                         double reach2, tobi_facing_points *list)
 {
+    const field f = open_field(row, x, reach2);
+    four square, height;
     for (int64_t k = begin; k < end; k += 4) {
-        const four rx = x[0] - load(row[0] + k), ry = x[1] - load(row[1] + k), rz = x[2] - load(row[2] + k);
-        const four height = rx*load(row[3] + k) + ry*load(row[4] + k) + rz*load(row[5] + k);
-        const four square = rx*rx + ry*ry + rz*rz;
-        unsigned m = bits((square < reach2) & (height > 0));
-        if (end - k < 4) m &= (1u << (end - k)) - 1;
+        const unsigned m = test(&f, k, end, &square, &height);
         if (m) append(list, k, m, square, height);
     }
 }
 
-/* The mean depth of the body behind each point's plane. */
-static void find_reach(const tobi_smoothing_constants *c, const tobi_facing_points *q, double *reach)
+static int any_point(double *const row[TOBI_POINT_ROWS], int64_t begin, int64_t end, const double x[3],
+                     double reach2)
 {
+    const field f = open_field(row, x, reach2);
+    four square, height;
+    for (int64_t k = begin; k < end; k += 4)
+        if (test(&f, k, end, &square, &height)) return 1;
+    return 0;
+}
+
+/* Of each listed point, what divisions make: several at once, before the sums. */
+typedef struct shares {
+    double area_weight[TOBI_FACING_MOST];
+    double reach[TOBI_FACING_MOST];     /* m, lambda/sigma: the mean depth of the body behind its plane */
+    double rise[TOBI_FACING_MOST];      /* tobi_boundary_rise                                           */
+    double rate[TOBI_FACING_MOST];      /* 1/m2, of no-slip friction                                    */
+} shares;
+
+static void find_shares(const tobi_smoothing_constants *c, const tobi_facing_points *q, double distance,
+                        shares *out)
+{
+    const double nearest = 0.25*c->spacing;
+    double at[TOBI_FACING_MOST], sigma[TOBI_FACING_MOST];
+    for (int i = 0; i < q->count; i++) at[i] = q->height[i]/c->h*TOBI_PLANE_SAMPLES;
     for (int i = 0; i < q->count; i++) {
-        const double at = q->height[i]/c->h*TOBI_PLANE_SAMPLES;
-        const double sigma = tobi_wall_table_at(c->plane.sigma, at);
-        reach[i] = sigma > 0 ? tobi_wall_table_at(c->plane.lambda, at)/sigma : 0;
+        sigma[i] = tobi_wall_table_at(c->plane.sigma, at[i]);
+        out->reach[i] = tobi_wall_table_at(c->plane.lambda, at[i]);
+        out->area_weight[i] = tobi_facing_point(q, i)->area*q->weight[i];
     }
+    for (int i = 0; i < q->count; i++) {
+        const double s = q->height[i], share = out->reach[i]/sigma[i];
+        out->reach[i] = sigma[i] > 0 ? share : 0;
+        out->rise[i] = tobi_boundary_rise(s, distance, c->spacing);
+        out->rate[i] = 2*out->area_weight[i]/(s > nearest ? s : nearest);
+    }
+}
+
+/* Whole numbers: the same sum in any order. A locked addition takes as long as half of the other sums. */
+static inline void cover(const tobi_look_view *v, int32_t point, uint32_t more)
+{
+    if (v->alone) v->body->covered[point] += more;
+    else __atomic_fetch_add(&v->body->covered[point], more, __ATOMIC_RELAXED);
 }
 
 static void sum_points(const tobi_look_view *view, const tobi_facing_points *q, tobi_boundary_link *link,
@@ -84,29 +134,27 @@ static void sum_points(const tobi_look_view *view, const tobi_facing_points *q, 
     four gradient = three(link->gradient), torque_arm = three(link->torque_arm);
     four hydrostatic = three(e->hydrostatic), drag_velocity = three(e->drag_velocity);
     double flux = e->wall_flux, share = e->share, steady = e->steady, height = e->height, drag = e->drag;
-    double reach[TOBI_FACING_MOST];
-    find_reach(c, q, reach);
+    shares of;
+    find_shares(c, q, e->distance, &of);
     for (int i = 0; i < q->count; i++) {
         const tobi_boundary_point *p = tobi_facing_point(q, i);
         const int32_t k = p->number;
-        const double s = q->height[i], w = q->weight[i], aw = p->area*w;
+        const double s = q->height[i], aw = of.area_weight[i], reach = of.reach[i];
         const double *n = p->normal, *v = b->point_velocity[k];
         const four normal = three(n), arm = three(p->at) + lower - centre;
         const double gn = g[0]*n[0] + g[1]*n[1] + (c->dimension == 3 ? g[2]*n[2] : 0);
         __atomic_store_n(&b->wet[k], TOBI_WET, __ATOMIC_RELAXED);
-        /* whole numbers: the same sum in any order */
-        __atomic_fetch_add(&b->covered[k], (uint32_t)(2*c->volume*w*TOBI_COVERED), __ATOMIC_RELAXED);
+        cover(view, k, (uint32_t)(2*c->volume*q->weight[i]*TOBI_COVERED));
         gradient -= aw*normal;
         torque_arm -= aw*(turn(arm)*turn_back(normal) - turn_back(arm)*turn(normal));
-        hydrostatic -= aw*gn*(s + reach[i])*normal;
+        hydrostatic -= aw*gn*(s + reach)*normal;
         flux -= aw*(n[0]*v[0] + n[1]*v[1] + n[2]*v[2]);
-        share += aw*reach[i];
-        steady += aw*reach[i]*tobi_boundary_rise(s, e->distance, c->spacing);
+        share += aw*reach;
+        steady += aw*reach*of.rise[i];
         height += aw*s;
         if (b->friction != TOBI_NO_SLIP) continue;
-        const double rate = 2*aw/(s > 0.25*c->spacing ? s : 0.25*c->spacing);
-        drag += rate;
-        drag_velocity += rate*three(v);
+        drag += of.rate[i];
+        drag_velocity += of.rate[i]*three(v);
     }
     for (int a = 0; a < 3; a++) {
         link->gradient[a] = gradient[a];
@@ -117,4 +165,4 @@ static void sum_points(const tobi_look_view *view, const tobi_facing_points *q, 
     e->wall_flux = flux, e->share = share, e->steady = steady, e->height = height, e->drag = drag;
 }
 
-const tobi_look_loops JOIN(tobi_look_loops, TOBI_ISA) = {list_points, sum_points};
+const tobi_look_loops JOIN(tobi_look_loops, TOBI_ISA) = {list_points, any_point, sum_points};

@@ -10,12 +10,16 @@ typedef struct tobi_look_view {
     const tobi_body *body;
     const tobi_smoothing_constants *smoothing;
     double gravity[3];        /* m/s2, what the particle feels                                    */
+    int alone;                /* 1: no other thread looks at the body                             */
 } tobi_look_view;
 
 typedef struct tobi_look_loops {
     /* Adds those of points [begin, end) to the list that face x and are nearer than the root of reach2. */
     void (*list)(double *const row[TOBI_POINT_ROWS], int64_t begin, int64_t end, const double x[3],
                  double reach2, tobi_facing_points *list);
+    /* Whether there is any. */
+    int (*any)(double *const row[TOBI_POINT_ROWS], int64_t begin, int64_t end, const double x[3],
+               double reach2);
     /* Adds the listed points, by their weights, to link and entry, and marks them as wet and covered. */
     void (*sum)(const tobi_look_view *v, const tobi_facing_points *list, tobi_boundary_link *link,
                 tobi_boundary_entry *entry);
