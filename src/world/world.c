@@ -50,7 +50,8 @@ static tobi_status refuse_method(const char *name, tobi_error *err)
     char known[200] = "";
     size_t used = 0;
     for (int k = 0; tobi_method_at(k) && used < sizeof known; k++)
-        used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", k ? ", " : "", tobi_method_at(k)->name);
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", k ? ", " : "",
+                                 tobi_method_at(k)->name);
     return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known are %s", name ? name : "", known);
 }
 
