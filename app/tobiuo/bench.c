@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 enum { KEY_THREADS = KEY_OWN, KEY_STEPS, KEY_SETTLE, KEY_SCENE, KEY_PROJECT,
-       KEY_BODIES, KEY_SIZE, KEY_FIXED, KEY_CSV };
+       KEY_BODIES, KEY_SIZE, KEY_FIXED, KEY_METHOD, KEY_CSV };
 enum { MORE_ITERATIONS = 12 };
 
 static const struct argp_option options[] = {
@@ -20,6 +20,7 @@ static const struct argp_option options[] = {
     { "bodies", KEY_BODIES, "N", 0, "bodies_in_water: how many bodies (1000)", 0 },
     { "size", KEY_SIZE, "X", 0, "bodies_in_water: edge of a body in spacings (2)", 0 },
     { "fixed", KEY_FIXED, NULL, 0, "bodies_in_water: bodies that do not move", 0 },
+    { "method", KEY_METHOD, "NAME", 0, "bodies_in_water: dfsph (default), wcsph, isph or eisph", 0 },
     { "csv", KEY_CSV, "FILE", 0, "append a row per measurement to this table", 0 },
     { 0 }
 };
@@ -44,6 +45,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_BODIES: o->bodies = parse_count(state, "--bodies", value); break;
     case KEY_SIZE: o->size = parse_positive(state, "--size", value); break;
     case KEY_FIXED: o->fixed = 1; break;
+    case KEY_METHOD: o->method = value; break;
     case KEY_CSV: o->csv = value; break;
     case ARGP_KEY_ARG:
         if (o->which) argp_error(state, "one CASE only");

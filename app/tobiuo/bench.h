@@ -20,6 +20,7 @@ typedef struct bench_options {
     int bodies;              /* of the case bodies_in_water; 0 = its own               */
     double size;             /* of a body of it, spacings; 0 = its own       */
     int fixed;               /* 1: they do not move                          */
+    const char *method;      /* of bodies_in_water; NULL = dfsph             */
     const char *csv;         /* file that gets a row per measurement; NULL = none */
     bench_machine machine;
 } bench_options;

@@ -12,6 +12,8 @@ static const int SIZE[3] = { 52, 52, 38 };
 
 typedef struct pool { tobi_world *world; bench_run run; int bodies; } pool;
 
+static const char *method_of(const bench_options *o) { return o->method ? o->method : "dfsph"; }
+
 /* Bodies stand on a lattice that fills the water: the fewest places per edge that hold all. */
 static tobi_status add_bodies(tobi_world *world, const bench_options *o, double spacing, int count,
                               tobi_error *err)
@@ -49,7 +51,7 @@ static tobi_world *make_pool(const bench_options *o, int bodies)
         fill.box_max[a] = SIZE[a] * spacing;
         w.domain_max[a] = fill.box_max[a] + (a == 2 ? 10.0 * spacing : 0.0);
     }
-    w.method = "dfsph";
+    w.method = method_of(o);
     w.spacing = spacing;
     w.threads = o->threads;
     w.end_time = 10.0;
@@ -101,8 +103,9 @@ int bench_bodies_in_water(const bench_options *o)
     const int settle = o->settle ? o->settle : 5, steps = o->steps ? o->steps : 20;
     pool p[2] = { { .bodies = 1 }, { .bodies = o->bodies ? o->bodies : MANY } };
     int failed = 0;
-    printf("case                   pool of %d x %d x %d spacings with boxes of %g, %s, after %d steps\n",
-           SIZE[0], SIZE[1], SIZE[2], o->size > 0.0 ? o->size : 2.0, o->fixed ? "fixed" : "free", settle);
+    printf("case                   pool of %d x %d x %d spacings by %s, boxes of %g, %s, after %d steps\n",
+           SIZE[0], SIZE[1], SIZE[2], method_of(o), o->size > 0.0 ? o->size : 2.0,
+           o->fixed ? "fixed" : "free", settle);
     fflush(stdout);
     for (int k = 0; k < 2 && !failed; k++) {
         p[k].world = make_pool(o, p[k].bodies);
@@ -114,8 +117,9 @@ int bench_bodies_in_water(const bench_options *o)
         if (p[k].world) bench_end(&p[k].run);
     if (!failed) print_pools(&p[0], &p[1]);
     for (int k = 0; k < 2 && !failed; k++) {
-        char name[32];
-        snprintf(name, sizeof name, "%d_bodies_in_water", p[k].bodies);
+        char name[64];
+        snprintf(name, sizeof name, "%d_bodies_in_water%s%s", p[k].bodies, o->method ? "_" : "",
+                 o->method ? o->method : "");
         failed = bench_write(o, name, &p[k].run);
     }
     for (int k = 0; k < 2; k++) tobi_world_destroy(p[k].world);

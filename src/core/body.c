@@ -564,6 +564,17 @@ static void advance_free(tobi_body *b)
     tobi_body_report(b);
 }
 
+/* Velocities that the motion of the last step had where the vertices are in the middle of this one: a round
+   vessel that turns about its axis does not accelerate what slips along it. */
+static void carry_before(tobi_body *b, double dt)
+{
+    for (int32_t k = 0; k < b->mesh.vertex_count; k++) {
+        double more[3];
+        vec3_cross(more, b->info.angular_velocity, b->vertex_before[k]);
+        vec3_add_scaled(b->vertex_before[k], b->vertex_before[k], dt, more);
+    }
+}
+
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err)
 {
     if (b->rigid.kind != TOBI_PRESCRIBED) {
@@ -583,6 +594,7 @@ tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err
     memcpy(b->info.position, b->centre, sizeof b->centre);
     to_quaternion((const double (*)[3])b->frame, b->info.orientation);
     turn_rate((const double (*)[3])old_frame, (const double (*)[3])b->frame, dt, b->info.angular_velocity);
+    if (!b->deforms) carry_before(b, dt);
     mirror_motion(b);
     return TOBI_OK;
 }

@@ -61,7 +61,10 @@ double tobi_smoothing_w(int shape, int dimension, double h, double r)
 void tobi_smoothing_weigh(int shape, int dimension, double h, int n, const double *square, double *w)
 {
     const double scale = norm(shape, dimension, h);
-    for (int k = 0; k < n; k++) w[k] = value(shape, scale, sqrt(square[k])/h);
+    if (shape == TOBI_SHAPE_WENDLAND)       /* the default: without a switch the compiler takes two at once */
+        for (int k = 0; k < n; k++) w[k] = value(TOBI_SHAPE_WENDLAND, scale, sqrt(square[k])/h);
+    else
+        for (int k = 0; k < n; k++) w[k] = value(shape, scale, sqrt(square[k])/h);
 }
 
 double tobi_smoothing_f(int shape, int dimension, double h, double r)

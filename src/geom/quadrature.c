@@ -213,16 +213,16 @@ void tobi_quadrature_move(tobi_quadrature *s, int64_t from, int64_t to)
 
 /* --- moving ------------------------------------------------------------------------------- */
 
-static void update_part(const tobi_quadrature *s, int64_t i, const double *const x[3], double middle[3],
-                        double normal[3], double *area)
+/* Returns the triangle's area. */
+static double find_plane(const double *const x[3], double normal[3])
 {
     double ab[3], ac[3];
     vec3_sub(ab, x[1], x[0]);
     vec3_sub(ac, x[2], x[0]);
     vec3_cross(normal, ab, ac);
-    *area = 0.5*vec3_length(normal)*s->fraction[i];
+    const double area = 0.5*vec3_length(normal);
     vec3_normalize(normal);
-    place_point(middle, s->a[i], x);
+    return area;
 }
 
 static void update_line(const tobi_quadrature *s, int64_t i, const double *const x[3], double middle[3],
@@ -253,12 +253,18 @@ static void update_points(const void *view, int64_t begin, int64_t end)
 {
     const moving *m = view;
     const tobi_quadrature *s = m->s;
+    double n[3], all = 0;
     for (int64_t i = begin; i < end; i++) {
         const int32_t *t = m->triangles[s->triangle[i]];
         const double *x[3] = {m->vertices[t[0]], m->vertices[t[1]], m->vertices[t[2]]};
-        double middle[3], n[3], weight;
-        if (s->dimension == 2) update_line(s, i, x, middle, n, &weight);
-        else update_part(s, i, x, middle, n, &weight);
+        double middle[3], weight;
+        if (s->dimension == 2) {
+            update_line(s, i, x, middle, n, &weight);
+        } else {
+            if (i == begin || s->triangle[i] != s->triangle[i - 1]) all = find_plane(x, n);
+            weight = all*s->fraction[i];
+            place_point(middle, s->a[i], x);
+        }
         if (m->position) memcpy(m->position[i], middle, sizeof middle);
         if (m->normal) memcpy(m->normal[i], n, sizeof n);
         if (m->area) m->area[i] = weight;

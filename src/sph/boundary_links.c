@@ -26,12 +26,9 @@ tobi_status tobi_boundary_grow_rows(void **p, int64_t *capacity, int64_t need, s
 /* Whether a particle at x sees one of the points. */
 static int sees_any(const tobi_system *s, tobi_point_run run, const double x[3])
 {
+    const tobi_boundary_links *n = &sph_of(s)->links;
     const double h = s->smoothing.h;
-    for (const tobi_boundary_point *p = run.begin; p < run.end; p++) {
-        const double r[3] = {x[0] - p->at[0], x[1] - p->at[1], x[2] - p->at[2]};
-        if (dot(r, r) < h*h && p->area > 0 && dot(r, p->normal) > 0) return 1;
-    }
-    return 0;
+    return n->loops->any(n->point_row, run.begin - n->point, run.end - n->point, x, h*h);
 }
 
 /* Whether x sees a point of the body: most likely one in its own or the nearest bin. */
@@ -47,7 +44,7 @@ static int sees_body(const tobi_system *s, int body, const double x[3])
 
 static int cell_along(const tobi_cells *c, int axis, double x)
 {
-    double k = floor(x*c->inverse[axis]);
+    const double k = x*c->inverse[axis];
     return k < 0 ? 0 : k >= c->n[axis] ? c->n[axis] - 1 : (int)k;
 }
 
@@ -66,12 +63,11 @@ static tobi_status add_row(tobi_system *s, int body, int64_t begin, int64_t end,
 static tobi_status list_rows(tobi_system *s, int body, int64_t *hits, tobi_error *err)
 {
     const tobi_cells *c = &s->cells;
-    double lo[3], hi[3];
+    const tobi_boundary_bins *box = &sph_of(s)->links.bins[body];
     int low[3], high[3];
-    tobi_bvh_box(s->sim->bodies[body].bvh, lo, hi);
     for (int a = 0; a < 3; a++) {
-        low[a] = cell_along(c, a, lo[a] - 1.001*s->smoothing.h);
-        high[a] = cell_along(c, a, hi[a] + 1.001*s->smoothing.h);
+        low[a] = cell_along(c, a, box->lower[a] - 1.001*s->smoothing.h);
+        high[a] = cell_along(c, a, box->upper[a] + 1.001*s->smoothing.h);
     }
     for (int k = low[1]/c->strip; k <= high[1]/c->strip; k++)
         for (int z = low[2]; z <= high[2]; z++)
@@ -84,8 +80,9 @@ static tobi_status list_rows(tobi_system *s, int body, int64_t *hits, tobi_error
 }
 
 /* Whether x is too far from a box for a point in it to be within h. */
-static int is_far(const tobi_system *s, const double lo[3], const double hi[3], const double x[3])
+static int is_far(const tobi_system *s, const tobi_boundary_bins *box, const double x[3])
 {
+    const double *lo = box->lower, *hi = box->upper;
     double square = 0;
     for (int a = 0; a < s->box.dimension; a++) {
         const double beyond = x[a] < lo[a] ? lo[a] - x[a] : x[a] > hi[a] ? x[a] - hi[a] : 0;
@@ -104,28 +101,39 @@ static void find_hits(const void *view, int64_t begin, int64_t end, double *tota
         const tobi_boundary_row *row = &n->row[r];
         int32_t *hit = n->hit + row->hit;
         int64_t found = 0;
-        double lo[3], hi[3];
-        tobi_bvh_box(s->sim->bodies[row->body].bvh, lo, hi);
         for (int32_t i = row->begin; i < row->end; i++) {
             const tobi_double3 at = s->particles.position[i];
             const double x[3] = {at.x, at.y, at.z};
-            if (!is_far(s, lo, hi, x) && sees_body(s, row->body, x)) hit[found++] = i;
+            if (!is_far(s, &n->bins[row->body], x) && sees_body(s, row->body, x)) hit[found++] = i;
         }
         n->found[r] = found;
     }
 }
 
+static void fill_row(const tobi_system *s, int64_t r, int alone)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    const tobi_boundary_row *row = &n->row[r];
+    const int64_t stop = r + 1 < n->row_count ? n->found[r + 1] : n->count;
+    const int32_t *hit = n->hit + row->hit;
+    for (int64_t k = n->found[r]; k < stop; k++)
+        tobi_boundary_look(s, *hit++, row->body, alone, &n->link[k], &n->entry[k]);
+}
+
+/* The rows of a body that few particles see are one piece of work, that of its first row: its points then
+   need no locked sums. */
 static void fill_entries(const void *view, int64_t begin, int64_t end, double *totals)
 {
+    enum { FEW = 4*TOBI_BLOCK };
     const tobi_system *s = view;
     const tobi_boundary_links *n = &sph_of(s)->links;
     (void)totals;
     for (int64_t r = begin; r < end; r++) {
-        const tobi_boundary_row *row = &n->row[r];
-        const int64_t stop = r + 1 < n->row_count ? n->found[r + 1] : n->count;
-        const int32_t *hit = n->hit + row->hit;
-        for (int64_t k = n->found[r]; k < stop; k++)
-            tobi_boundary_look(s, *hit++, row->body, &n->link[k], &n->entry[k]);
+        const int32_t body = n->row[r].body;
+        const int alone = n->first[body + 1] - n->first[body] <= FEW;
+        if (!alone) fill_row(s, r, 0);
+        else if (r == 0 || n->row[r - 1].body != body)
+            for (int64_t k = r; k < n->row_count && n->row[k].body == body; k++) fill_row(s, k, 1);
     }
 }
 
@@ -323,7 +331,8 @@ int64_t tobi_boundary_links_bytes(const tobi_boundary_links *n)
            n->part_capacity*(int64_t)sizeof *n->part + n->caught_capacity*(int64_t)sizeof *n->caught +
            n->blocks_capacity*(int64_t)sizeof *n->caught_block +
            n->bins_capacity*(int64_t)sizeof *n->bins + n->start_capacity*(int64_t)sizeof *n->bin_start +
-           n->point_capacity*(int64_t)sizeof *n->point + n->row_capacity*(int64_t)sizeof *n->row +
+           n->point_capacity*(int64_t)(sizeof *n->point + TOBI_POINT_ROWS*sizeof **n->point_row) +
+           n->row_capacity*(int64_t)sizeof *n->row +
            n->found_capacity*(int64_t)sizeof *n->found + n->hit_capacity*(int64_t)sizeof *n->hit;
 }
 
@@ -340,6 +349,7 @@ void tobi_boundary_links_free(tobi_boundary_links *n)
     tobi_array_free(n->bins);
     tobi_array_free(n->bin_start);
     tobi_array_free(n->point);
+    for (int r = 0; r < TOBI_POINT_ROWS; r++) tobi_array_free(n->point_row[r]);
     tobi_array_free(n->row);
     tobi_array_free(n->found);
     tobi_array_free(n->hit);

@@ -5,12 +5,17 @@
 #include "sph/boundary_points.h"
 #include "sph/body_tree.h"
 #include "sph/couple.k.h"
+#include "sph/look_loops.h"
 
 /* Particles of a row of cells near a body. */
 typedef struct tobi_boundary_row { int32_t body, begin, end; int64_t hit; } tobi_boundary_row;
 
-/* The caught particles of a block. */
-typedef struct tobi_caught_block { double lower[3], upper[3]; int32_t count; } tobi_caught_block;
+/* The caught particles of a block. next: the next block with any, -1: none. */
+typedef struct tobi_caught_block {
+    double lower[3], upper[3];
+    int64_t next;
+    int32_t count;
+} tobi_caught_block;
 
 struct tobi_system;
 
@@ -26,17 +31,21 @@ typedef struct tobi_boundary_links {
     tobi_block_sum *part;     /* scratch of sums over the particles of each body                  */
     int32_t *caught;          /* [particles] of each block first those that bodies have caught    */
     tobi_caught_block *caught_block;
+    int64_t first_caught;     /* block                                                            */
     tobi_body_tree tree;
     /* scratch of the search */
     tobi_boundary_bins *bins;     /* [bodies + 1]                                                     */
     double bin_width;         /* m                                                                */
     int32_t *bin_start;
     tobi_boundary_point *point;   /* of all bodies, by bin                                            */
+    double *point_row[TOBI_POINT_ROWS];     /* the same                                               */
+    const tobi_look_loops *loops;           /* for this machine                                       */
     tobi_boundary_row *row;
     int64_t row_count;
     int64_t *found;           /* [row_count] particles that see the body, then entries before     */
     int32_t *hit;             /* those particles                                                  */
     int64_t first_capacity, total_capacity, answer_capacity, part_capacity, caught_capacity, blocks_capacity;
+    int64_t row_room[TOBI_POINT_ROWS];
     int64_t bins_capacity, start_capacity, point_capacity, row_capacity, found_capacity;
     int64_t hit_capacity;
 } tobi_boundary_links;

@@ -19,9 +19,8 @@ static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1
 /* A particle's look at one body. */
 typedef struct look {
     const tobi_system *s;
-    const tobi_body *b;
     double x[3];
-    double gravity[3];          /* m/s2, what the particle feels */
+    tobi_look_view view;
     tobi_boundary_link *link;
     tobi_boundary_entry *entry;
 } look;
@@ -31,7 +30,7 @@ typedef struct look {
 static int is_hidden(const look *l, const tobi_facing_points *q, int k)
 {
     const tobi_boundary_entry *e = l->entry;
-    const tobi_boundary_point *p = q->point[k];
+    const tobi_boundary_point *p = tobi_facing_point(q, k);
     const double d = l->s->smoothing.spacing;
     double to[3], from_foot[3];
     if (p->outermost && q->height[k] > LIFT*d) return 0;
@@ -39,7 +38,7 @@ static int is_hidden(const look *l, const tobi_facing_points *q, int k)
         to[a] = p->at[a] + LIFT*d*p->normal[a];
         from_foot[a] = to[a] - e->foot[a];
     }
-    return dot(from_foot, e->foot_normal) < -0.25*d && tobi_bvh_segment_hits(l->b->bvh, l->x, to);
+    return dot(from_foot, e->foot_normal) < -0.25*d && tobi_bvh_segment_hits(l->view.body->bvh, l->x, to);
 }
 
 static void drop_hidden(const look *l, tobi_facing_points *q)
@@ -47,50 +46,11 @@ static void drop_hidden(const look *l, tobi_facing_points *q)
     int kept = 0;
     for (int k = 0; k < q->count; k++) {
         if (is_hidden(l, q, k)) continue;
-        q->point[kept] = q->point[k];
+        q->index[kept] = q->index[k];
         q->square[kept] = q->square[k];
         q->height[kept++] = q->height[k];
     }
     q->count = kept;
-}
-
-static void sum_points(const look *l, const tobi_facing_points *q)
-{
-    const tobi_body *b = l->b;
-    const tobi_smoothing_constants *c = &l->s->smoothing;
-    const double *g = l->gravity;
-    tobi_boundary_link link = *l->link;
-    tobi_boundary_entry e = *l->entry;
-    for (int i = 0; i < q->count; i++) {
-        const tobi_boundary_point *p = q->point[i];
-        const int32_t k = p->number;
-        const double *n = p->normal, *v = b->point_velocity[k], s = q->height[i], w = q->weight[i];
-        const double aw = p->area*w;
-        __atomic_store_n(&b->wet[k], TOBI_WET, __ATOMIC_RELAXED);
-        /* whole numbers: the same sum in any order */
-        __atomic_fetch_add(&b->covered[k], (uint32_t)(2*c->volume*w*TOBI_COVERED), __ATOMIC_RELAXED);
-        const double at = fmax(s, 0)/c->h*TOBI_PLANE_SAMPLES,
-                     sigma = tobi_wall_table_at(c->plane.sigma, at);
-        const double reach = sigma > 0 ? tobi_wall_table_at(c->plane.lambda, at)/sigma : 0;
-        double arm[3], gn = g[0]*n[0] + g[1]*n[1] + (c->dimension == 3 ? g[2]*n[2] : 0);
-        for (int a = 0; a < 3; a++) arm[a] = p->at[a] + b->lower[a] - b->centre[a];
-        for (int a = 0; a < 3; a++) {
-            const int u = (a + 1)%3, o = (a + 2)%3;
-            link.gradient[a] -= aw*n[a];
-            link.torque_arm[a] -= aw*(arm[u]*n[o] - arm[o]*n[u]);
-            e.hydrostatic[a] -= aw*gn*(s + reach)*n[a];
-        }
-        e.wall_flux -= aw*dot(n, v);
-        e.share += aw*reach;
-        e.steady += aw*reach*tobi_boundary_rise(s, e.distance, c->spacing);
-        e.height += aw*s;
-        if (b->friction != TOBI_NO_SLIP) continue;
-        const double rate = 2*aw/fmax(s, 0.25*c->spacing);
-        e.drag += rate;
-        for (int a = 0; a < 3; a++) e.drag_velocity[a] += rate*v[a];
-    }
-    *l->link = link;
-    *l->entry = e;
 }
 
 static void add_points(void *user, tobi_facing_points *q)
@@ -100,7 +60,7 @@ static void add_points(void *user, tobi_facing_points *q)
     drop_hidden(l, q);
     tobi_facing_weigh(q, c);
     for (int k = 0; k < q->count; k++) q->weight[k] = c->plane_scale*q->weight[k];
-    sum_points(l, q);
+    sph_of(l->s)->links.loops->sum(&l->view, q, l->link, l->entry);
 }
 
 /* The nearest place of the body; 0 if it is far. */
@@ -108,7 +68,7 @@ static int find_foot(const look *l)
 {
     tobi_boundary_entry *e = l->entry;
     tobi_bvh_hit hit;
-    if (!tobi_bvh_closest(l->b->bvh, l->x, 1.1*l->s->smoothing.h, &hit)) return 0;
+    if (!tobi_bvh_closest(l->view.body->bvh, l->x, 1.1*l->s->smoothing.h, &hit)) return 0;
     e->distance = hit.signed_distance;
     e->triangle = hit.triangle;
     memcpy(e->barycentric, hit.barycentric, sizeof e->barycentric);
@@ -118,14 +78,16 @@ static int find_foot(const look *l)
     return 1;
 }
 
-void tobi_boundary_look(const tobi_system *s, int32_t i, int body, tobi_boundary_link *link,
+void tobi_boundary_look(const tobi_system *s, int32_t i, int body, int alone, tobi_boundary_link *link,
                         tobi_boundary_entry *entry)
 {
     const tobi_boundary_links *n = &sph_of(s)->links;
     const tobi_double3 at = s->particles.position[i];
     look l;
     l.s = s;
-    l.b = &s->sim->bodies[body];
+    l.view.body = &s->sim->bodies[body];
+    l.view.smoothing = &s->smoothing;
+    l.view.alone = alone;
     memcpy(l.x, &at, sizeof l.x);
     l.link = link;
     l.entry = entry;
@@ -136,7 +98,7 @@ void tobi_boundary_look(const tobi_system *s, int32_t i, int body, tobi_boundary
     link->distance = (float)s->smoothing.h;
     if (!find_foot(&l)) return;
     link->distance = (float)fabs(entry->distance);
-    sph_gravity_at(s, l.x, s->particles.fluid[i], l.gravity);
+    sph_gravity_at(s, l.x, s->particles.fluid[i], l.view.gravity);
     tobi_boundary_take_facing(n, body, l.x, s->smoothing.h, add_points, &l);
     entry->share = fmin(entry->share, 0.98);
 }

@@ -1,7 +1,8 @@
 /* Neighbours near bodies: pairs that a body separates leave the neighbour list, those that are one past a
    blunt edge stay, and particles near a body or next to one that is are marked. Most pairs are farther from
-   bodies than from each other, or see each other past a convex body, and only the rest asks for the mesh.
-   Drawback: that costs two walks through it. */
+   bodies than from each other, or see each other past a convex body, and only the rest asks for the mesh,
+   once for both ends (decision 94). Drawback: what one end found, the other looks for in the list of the
+   first. */
 #include "sph/boundary.h"
 #include "sph/state.h"
 #include <math.h>
@@ -23,28 +24,42 @@ static void subtract(const tobi_system *s, int64_t i, int64_t j, int32_t d[3])
     d[2] = (int32_t)((uint32_t)a->z - (uint32_t)b->z);
 }
 
-/* A body between two particles is not farther from both together than they are from each other. */
-static int may_separate(const tobi_system *s, int64_t i, int64_t j)
-{
-    const float *body_distance = sph_fields_of(&s->particles)->body_distance;
-    double square = 0;
-    int32_t fixed[3];
-    const double least = (double)body_distance[i] + body_distance[j];
-    if (least > 1.001*s->smoothing.h) return 0;
-    subtract(s, i, j, fixed);
-    for (int a = 0; a < 3; a++) {
-        const double d = fixed[a]*(double)s->box.from_fixed[a];
-        square += d*d;
-    }
-    return least*least < 1.001*square;
-}
-
 /* Is a place above the plane across the way from the nearest point of a convex body to a particle? Then the
    two see each other. What rounding leaves of a way is none. */
 static int is_above(const tobi_system *s, const tobi_boundary_entry *e, const double from_foot[3])
 {
     const double clear = 0.01*s->smoothing.spacing;
     return e->distance > clear && dot(from_foot, e->offset) > clear*e->distance;
+}
+
+/* Whether a body that i sees may hide the place at x_i - d from it. */
+static int may_hide(const tobi_system *s, int64_t i, const double d[3])
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    const double size = 1.01*sqrt(dot(d, d));
+    for (int32_t k = sph_fields_of(&s->particles)->last_link[i]; k >= 0; k = n->link[k].previous) {
+        const tobi_boundary_entry *e = &n->entry[k];
+        const double from_foot[3] = {e->offset[0] - d[0], e->offset[1] - d[1], e->offset[2] - d[2]};
+        if (n->link[k].distance > size) continue;
+        if (!s->sim->bodies[n->link[k].body].convex || !is_above(s, e, from_foot)) return 1;
+    }
+    return 0;
+}
+
+/* A body between two particles is not farther from both together than they are from each other. */
+static int may_separate(const tobi_system *s, int64_t i, int64_t j)
+{
+    const float *body_distance = sph_fields_of(&s->particles)->body_distance;
+    double square = 0, d[3];
+    int32_t fixed[3];
+    const double least = (double)body_distance[i] + body_distance[j];
+    if (least > 1.001*s->smoothing.h) return 0;
+    subtract(s, i, j, fixed);
+    for (int a = 0; a < 3; a++) {
+        d[a] = fixed[a]*(double)s->box.from_fixed[a];
+        square += d[a]*d[a];
+    }
+    return least*least < 1.001*square && may_hide(s, i, d);
 }
 
 /* Does the body lie between x and to, as its entries of the particles there have it? */
@@ -113,24 +128,85 @@ static double trace_of_pair(const tobi_smoothing_constants *c, const int32_t fix
            c->dimension;
 }
 
+static int32_t *list_of(const tobi_cells *c, int64_t i, int *count)
+{
+    *count = 8*c->list_groups[i];
+    return c->list + 8*(int64_t)c->list_start[i];
+}
+
+/* The particle's last link if k is that: particles are visited by their last links, once each. */
+static tobi_boundary_link *last_of(const tobi_system *s, int64_t k)
+{
+    tobi_boundary_link *l = &sph_of(s)->links.link[k];
+    return sph_fields_of(&s->particles)->last_link[l->particle] == k ? l : NULL;
+}
+
+/* Marks pairs that a body separates, where they stand in the list of the lower row, by ~j for j. */
+static void ask_pairs(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const int32_t *last_link = sph_fields_of(&s->particles)->last_link;
+    for (int64_t k = begin; k < end; k++) {
+        tobi_boundary_link *own = last_of(s, k);
+        if (!own) continue;
+        const int32_t i = own->particle;
+        int count;
+        int32_t *list = list_of(&s->cells, i, &count);
+        for (int g = 0; g < count; g++) {
+            const int32_t j = list[g];
+            if (j <= i || !may_separate(s, i, j) || !separated(s, i, j)) continue;
+            list[g] = ~j;
+            __atomic_store_n(&own->cut, 1, __ATOMIC_RELAXED);
+            __atomic_store_n(&sph_of(s)->links.link[last_link[j]].cut, 1, __ATOMIC_RELAXED);
+        }
+    }
+}
+
+static int is_marked(const tobi_system *s, int32_t i, int32_t j)
+{
+    const int32_t k = sph_fields_of(&s->particles)->last_link[i];
+    int count;
+    const int32_t *list = list_of(&s->cells, i, &count);
+    if (k < 0 || !sph_of(s)->links.link[k].cut) return 0;
+    for (int g = 0; g < count; g++)
+        if (__atomic_load_n(&list[g], __ATOMIC_RELAXED) == ~j) return 1;
+    return 0;
+}
+
+/* Marks them in the list of the higher row, too. */
+static void answer_pairs(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    for (int64_t k = begin; k < end; k++) {
+        const tobi_boundary_link *own = last_of(s, k);
+        if (!own || !own->cut) continue;
+        const int32_t i = own->particle;
+        int count;
+        int32_t *list = list_of(&s->cells, i, &count);
+        for (int g = 0; g < count; g++) {
+            const int32_t j = list[g];
+            if (j >= 0 && j < i && is_marked(s, j, i)) __atomic_store_n(&list[g], ~j, __ATOMIC_RELAXED);
+        }
+    }
+}
+
 static void cut_pairs(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const tobi_cells *c = &s->cells;
-    const int32_t *last_link = sph_fields_of(&s->particles)->last_link;
     tobi_boundary_links *n = &sph_of(s)->links;
     int64_t cut = 0;
     for (int64_t k = begin; k < end; k++) {
-        int64_t i = n->link[k].particle;
-        if (last_link[i] != k) continue; /* once per particle */
-        int32_t *list = c->list + 8*(int64_t)c->list_start[i];
-        for (int g = 0; g < 8*c->list_groups[i]; g++) {
-            int32_t j = list[g];
-            if (j == i || !may_separate(s, i, j) || !separated(s, i, j)) continue;
+        const tobi_boundary_link *own = last_of(s, k);
+        if (!own || !own->cut) continue;
+        const int32_t i = own->particle;
+        int count;
+        int32_t *list = list_of(&s->cells, i, &count);
+        for (int g = 0; g < count; g++) {
+            if (list[g] >= 0) continue;
             int32_t fixed[3];
-            subtract(s, i, j, fixed);
+            subtract(s, i, ~list[g], fixed);
             n->entry[k].hidden += trace_of_pair(&s->smoothing, fixed, s->box.to_fixed);
-            list[g] = (int32_t)i;
+            list[g] = i;
             cut++;
         }
     }
@@ -140,23 +216,26 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
 void tobi_boundary_cut_pairs(tobi_system *s)
 {
     tobi_boundary_links *n = &sph_of(s)->links;
-    tobi_loop(s->sim->exec.threads, s->particles.count, 0, find_distances, s);
+    const int threads = s->sim->exec.threads;
+    tobi_loop(threads, s->particles.count, 0, find_distances, s);
     n->cut_pairs = 0;
-    tobi_loop(s->sim->exec.threads, n->count, 64, cut_pairs, s);
+    tobi_loop(threads, n->count, 64, ask_pairs, s);
+    tobi_loop(threads, n->count, 512, answer_pairs, s);
+    tobi_loop(threads, n->count, 512, cut_pairs, s);
     n->cut_pairs /= 2;      /* each was seen from both sides */
 }
 
 static void mark_near_body(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const tobi_cells *c = &s->cells;
     uint8_t *near_body = sph_fields_of(&s->particles)->near_body;
     for (int64_t k = begin; k < end; k++) {
-        int64_t i = sph_of(s)->links.link[k].particle;
-        const int32_t *list = c->list + 8*(int64_t)c->list_start[i];
-        for (int g = 0; g < 8*c->list_groups[i]; g++)
-            __atomic_store_n(&near_body[list[g]], 1, __ATOMIC_RELAXED);
-        __atomic_store_n(&near_body[i], 1, __ATOMIC_RELAXED);
+        const tobi_boundary_link *own = last_of(s, k);
+        if (!own) continue;
+        int count;
+        const int32_t *list = list_of(&s->cells, own->particle, &count);
+        for (int g = 0; g < count; g++) __atomic_store_n(&near_body[list[g]], 1, __ATOMIC_RELAXED);
+        __atomic_store_n(&near_body[own->particle], 1, __ATOMIC_RELAXED);
     }
 }
 

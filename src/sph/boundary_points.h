@@ -11,10 +11,13 @@ typedef struct tobi_boundary_point {
     int32_t outermost;        /* of a rigid body: see tobi_body                                   */
 } tobi_boundary_point;
 
+/* Rows of the same points side by side, for the search: x, y, z, then the normal, 0 without an area. */
+enum { TOBI_POINT_ROWS = 6 };
+
 /* The cells of one body. */
 typedef struct tobi_boundary_bins {
     int n[3];
-    double lower[3];          /* m                                                                */
+    double lower[3], upper[3];    /* m, the body's box; in 2-D around its plane                    */
     double orientation[4];    /* of the body when its points were put here                        */
     int64_t start, item;      /* where its own begin in bin_start, point                          */
 } tobi_boundary_bins;
@@ -32,11 +35,17 @@ int tobi_boundary_runs(const struct tobi_boundary_links *links, int64_t body, co
 enum { TOBI_FACING_MOST = 128 };
 typedef struct tobi_facing_points {
     int count;
-    const tobi_boundary_point *point[TOBI_FACING_MOST];
-    double square[TOBI_FACING_MOST];  /* m2, the distance to each                                  */
-    double height[TOBI_FACING_MOST];  /* m, above its tangent plane                                */
+    const tobi_boundary_point *all;
+    int32_t index[TOBI_FACING_MOST + 4];       /* of each in `all`; lists may write four beyond their end */
+    double square[TOBI_FACING_MOST + 4];       /* m2, the distance to each                         */
+    double height[TOBI_FACING_MOST + 4];       /* m, above its tangent plane                       */
     double weight[TOBI_FACING_MOST];  /* W there: tobi_facing_weigh                                */
 } tobi_facing_points;
+
+static inline const tobi_boundary_point *tobi_facing_point(const tobi_facing_points *q, int k)
+{
+    return &q->all[q->index[k]];
+}
 
 /* Calls take with the points that have an area, face x, m from the lower corner of the box, and are nearer
    than reach, m, in the order of their bins. */

@@ -7,6 +7,7 @@
 typedef struct tobi_boundary_link {
     int32_t particle;
     int16_t body;
+    uint8_t cut;              /* of a particle's last link: 1: a body separates it from a neighbour */
     int32_t previous;         /* the particle's link to an earlier body, -1 = none                */
     float distance;           /* m, from the particle to the body's surface                       */
     double gradient[3];       /* G = -sum A W n, 1/m                                              */

@@ -12,6 +12,7 @@
 #include "sph/kernels.h"
 #include "sph/openings.h"
 #include "sph/phases.h"
+#include "sph/probe.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -249,12 +250,11 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     launch(s, m, m->kernel->isph_projection, t);
     sph_openings_drive(s);
     s->info.force_sum = t[0]*s->smoothing.volume;
-    memcpy(m->side_force, t + 1, sizeof m->side_force);
     tobi_stage_end(&s->sim->stages, "pressure force", &clock);
     return TOBI_OK;
 }
 
-/* Pressure by the images, as the kick found it; friction as it was made. */
+/* On the sides of the domain friction, as it was made; isph_measure adds the pressure. */
 static void measure_forces(tobi_system *s, isph *m, double *clock)
 {
     double friction[TOBI_TOTALS];
@@ -264,7 +264,8 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     without.acceleration.acts = 0;
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
-    for (int a = 0; a < 3; a++) s->info.wall_force[a] = m->side_force[a] + friction[a];
+    memcpy(s->info.wall_force, friction, sizeof s->info.wall_force);
+    memset(m->side_force, 0, sizeof m->side_force);
     tobi_boundary_load(s);
     isph_forces_load(&m->solver, s);
     sph_soft_load(s);
@@ -286,6 +287,18 @@ void isph_move(tobi_system *s)
     m->view.dt = (float)m->solver.view.way;
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
     sph_use_dt(s, &m->view);
+}
+
+/* Eq. (11), of the present state, where somebody asks. */
+void isph_measure(tobi_system *s)
+{
+    isph *m = s->state;
+    double force[3] = { 0 };
+    if (m->memory.started > 0) tobi_probe_sides(s, force);
+    for (int a = 0; a < 3; a++) {
+        s->info.wall_force[a] += force[a] - m->side_force[a];
+        m->side_force[a] = force[a];
+    }
 }
 
 tobi_status isph_refresh(tobi_system *s, tobi_error *err)

@@ -347,8 +347,10 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     const tobi_float4 t = lane_sum4(a->sum, a->self, a->difference, a->divergence);
     const double loss = 1 - v->trace[i]/v->dimension;
     const double whole = v->phase ? lane_sum(a->whole) : t.x;
-    const double excess = isph_excess(v, loss, whole, v->gate[i])/isph_density_of(v, i);
-    const double diagonal = t.x - t.y - a->bodies + excess;
+    const double others = t.x - t.y - a->bodies;     /* rounding, of a drop that solids close in */
+    const double excess = others > 1e-6*v->full
+                        ? isph_excess(v, loss, whole, v->gate[i])/isph_density_of(v, i) : v->full;
+    const double diagonal = others + excess;
     v->source[i] = isph_volume_source(v, i, -v->slope*t.w) + t.z + v->density/v->dt*v->slope*t.w;
     if (v->keeps_volume) v->source[i] += 0.5*v->density*v->invariant[i];
     v->excess[i] = excess;
@@ -412,14 +414,14 @@ TOBI_FN void isph_store_pressure(const isph_view *v, int64_t i, double *totals)
 }
 
 /* v -= dt/rho grad p, eq. (9): the difference form, with M^-1, in the bulk; the plain sum, with -p_i in place
-   of missing neighbours, at a free surface: corrected there, it would throw particles out. totals: |grad p|;
-   [1..3] force of image pairs on the sides of the domain, eq. (11), N. */
-typedef struct isph_projection_acc { lane p, x, y, z, fx, fy, fz; } isph_projection_acc;
+   of missing neighbours, at a free surface: corrected there, it would throw particles out. totals:
+   |grad p|. */
+typedef struct isph_projection_acc { lane p, x, y, z; } isph_projection_acc;
 
 TOBI_FN void isph_projection_start(const isph_view *v, int64_t i, isph_projection_acc *a)
 {
     a->p = lane_set(v->pressure[i]);
-    a->x = a->y = a->z = a->fx = a->fy = a->fz = lane_set(0);
+    a->x = a->y = a->z = lane_set(0);
     if (isph_soft_last(v, i) < 0) return;
     double n[3], s[3] = {0, 0, 0};
     isph_soft_normal(v, i, n);
@@ -433,22 +435,17 @@ TOBI_FN void isph_projection_pair(const isph_view *v, int64_t i, const tobi_neig
                             isph_projection_acc *a, const int shape, const int kind)
 {
     const lane f = isph_falloff(v, n, m, shape, kind), image = isph_pressure_difference(v, m, kind);
-    lane other = n->w + image, q = f*(other - a->p);
+    lane q = f*(n->w + image - a->p);
     if (v->phase) {
         const isph_pair_phase phase = isph_see_phase(v, i, n);
-        other = n->w + image*phase.other;
-        q = f*(other + phase.jump - a->p)/phase.face;
+        q = f*(n->w + image*phase.other + phase.jump - a->p)/phase.face;
     }
     a->x += q*n->dx; a->y += q*n->dy; a->z += q*n->dz;
-    if (kind != ISPH_SIDE) return;
-    const lane both = f*(other + a->p);
-    a->fx += both*n->dx; a->fy += both*n->dy; a->fz += both*n->dz;
 }
 
 TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projection_acc *a, double *totals)
 {
-    const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0)),
-                      w = lane_sum4(a->fx, a->fy, a->fz, lane_set(0));
+    const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0));
     const double own = v->pressure[i]/isph_density_of(v, i), mean = 2*v->gate[i]*v->surface_force*own,
                  k = -v->slope;
     double x[3] = {k*s.x, k*s.y, k*s.z};
@@ -462,7 +459,6 @@ TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projecti
     for (int c = 0; c < 3; c++) g[c] += v->gate[i]*(x[c] - g[c]);
     for (int c = 0; c < 3; c++) g[c] += mean*(&v->concentration_gradient[i].x)[c];
     totals[0] += sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
-    totals[1] += v->volume*k*w.x; totals[2] += v->volume*k*w.y; totals[3] += v->volume*k*w.z;
     for (int c = 0; c < v->dimension; c++) (&v->velocity[i].x)[c] -= (float)(v->dt/v->density*g[c]);
 }
 

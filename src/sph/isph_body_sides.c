@@ -3,7 +3,6 @@
    on a floor has open corners (decision 88 in docs/decisions). Drawback: a second walk over the points near
    a particle, beside sides only; it does not ask what hides them. */
 #include "sph/isph_body_sides.h"
-#include "sph/boundary_look.h"
 #include "sph/isph_images.k.h"
 #include "sph/state.h"
 #include "geom/vec3.h"

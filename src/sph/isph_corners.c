@@ -54,9 +54,10 @@ static void find_next(void *user, tobi_facing_points *q)
 {
     corner_look *l = user;
     for (int i = 0; i < q->count; i++) {
-        if (q->square[i] >= l->nearest || !meets_all(l, q->point[i]->number)) continue;
+        const int32_t k = tobi_facing_point(q, i)->number;
+        if (q->square[i] >= l->nearest || !meets_all(l, k)) continue;
         l->nearest = q->square[i];
-        l->next = q->point[i]->number;
+        l->next = k;
     }
 }
 
@@ -105,7 +106,7 @@ static void add_points(void *user, tobi_facing_points *q)
 {
     corner_look *l = user;
     tobi_facing_weigh(q, &l->s->smoothing);
-    for (int i = 0; i < q->count; i++) add_point(l, q->point[i], q->height[i], q->weight[i]);
+    for (int i = 0; i < q->count; i++) add_point(l, tobi_facing_point(q, i), q->height[i], q->weight[i]);
 }
 
 /* The next face, unless the body is in the way. */

@@ -160,7 +160,7 @@ static void add_coupling(void *user, tobi_facing_points *l)
     const tobi_body *b = body_of(&g->q);
     tobi_facing_weigh(l, &g->q.s->smoothing);
     for (int i = 0; i < l->count; i++) {
-        const int32_t k = l->point[i]->number;
+        const int32_t k = tobi_facing_point(l, i)->number;
         const double w = g->q.scale*l->weight[i], all = g->q.point[k].weight;
         if (w > 0 && all < INFINITY) add_push(b, k, -b->area[k]*w/all, g->coupling.f);
     }

@@ -1,5 +1,5 @@
-/* Sensors: what the fluid does at a point or on a wall, and how high it stands. Serial; a sensor looks only
-   at the cells around it. Drawback: a point in the fluid near a thin plate mixes both sides. */
+/* Sensors: what the fluid does at a point or on a wall, and how high it stands. A sensor looks only at the
+   cells around it, in serial. Drawback: a point in the fluid near a thin plate mixes both sides. */
 #pragma once
 #include "core/system.h"
 
@@ -15,3 +15,6 @@ int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, 
    direction out
    of the wall. 0 where there is no fluid. */
 double tobi_probe_place(const tobi_system *s, const double x[3], double normal[3]);
+
+/* N, of the pressure on all sides of the domain: the sum over places, one per spacing. */
+void tobi_probe_sides(tobi_system *s, double force[3]);

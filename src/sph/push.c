@@ -19,7 +19,8 @@ typedef struct pusher {
     tobi_system *s;
     const tobi_body *b;
     int body;
-    double lo[3], hi[3], share;
+    tobi_tree_box box;          /* a spacing around the body */
+    double share;
     int counting;
 } pusher;
 
@@ -171,7 +172,7 @@ static void list_caught(const void *view, int64_t begin, int64_t end, double *to
     const tobi_boundary_links *n = &sph_of(s)->links;
     int32_t *list = n->caught + begin;
     tobi_caught_block *found = &n->caught_block[begin/TOBI_BLOCK];
-    *found = (tobi_caught_block){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
+    *found = (tobi_caught_block){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, -1, 0};
     (void)totals;
     for (int64_t i = begin; i < end; i++) {
         const tobi_double3 *at = &s->particles.position[i];
@@ -193,14 +194,14 @@ static int is_outside(const pusher *p, int64_t i)
 {
     const double *x = &p->s->particles.position[i].x;
     for (int a = 0; a < p->s->box.dimension; a++)
-        if (x[a] < p->lo[a] || x[a] > p->hi[a]) return 1;
+        if (x[a] < p->box.lower[a] || x[a] > p->box.upper[a]) return 1;
     return 0;
 }
 
 static int is_apart(const pusher *p, const tobi_caught_block *b)
 {
     for (int a = 0; a < p->s->box.dimension; a++)
-        if (b->upper[a] < p->lo[a] || b->lower[a] > p->hi[a]) return 1;
+        if (b->upper[a] < p->box.lower[a] || b->lower[a] > p->box.upper[a]) return 1;
     return 0;
 }
 
@@ -223,13 +224,26 @@ static void push_parts(const void *view, int64_t begin, int64_t end, double *tot
     }
 }
 
+/* Chains the blocks in which bodies have caught particles: most have none, and each body asks for them. */
+static void chain_blocks(tobi_system *s)
+{
+    tobi_boundary_links *n = &sph_of(s)->links;
+    int64_t *link = &n->first_caught;
+    for (int64_t b = 0; b*TOBI_BLOCK < s->particles.count; b++) {
+        if (n->caught_block[b].count == 0) continue;
+        *link = b;
+        link = &n->caught_block[b].next;
+    }
+    *link = -1;
+}
+
 /* The totals of a launch over all particles. */
 static void push_all(const pusher *p, double *t)
 {
     tobi_system *s = p->s;
     tobi_boundary_links *n = &sph_of(s)->links;
     int64_t parts = 0;
-    for (int64_t b = 0; b*TOBI_BLOCK < s->particles.count; b++) {
+    for (int64_t b = n->first_caught; b >= 0; b = n->caught_block[b].next) {
         const int32_t *list = n->caught + b*TOBI_BLOCK;
         int32_t k = is_apart(p, &n->caught_block[b]) ? n->caught_block[b].count : 0;
         while (k < n->caught_block[b].count && is_outside(p, list[k])) k++;
@@ -247,14 +261,10 @@ void tobi_push_out(tobi_system *s)
     tobi_body_tree_build(&n->tree, s->sim->bodies, s->sim->body_count, s->smoothing.spacing,
                          s->box.dimension);
     tobi_launch(&s->sim->exec, TOBI_HOST(list_caught, 0, 0), s, 0, s->particles.count, NULL);
+    chain_blocks(s);
     for (int k = 0; k < s->sim->body_count; k++) {
         double t[TOBI_TOTALS];
-        pusher p = {.s = s, .b = &s->sim->bodies[k], .body = k, .share = 1};
-        tobi_bvh_box(p.b->bvh, p.lo, p.hi);
-        for (int a = 0; a < 3; a++) {
-            p.lo[a] -= s->smoothing.spacing;
-            p.hi[a] += s->smoothing.spacing;
-        }
+        pusher p = {.s = s, .b = &s->sim->bodies[k], .body = k, .box = n->tree.box[k], .share = 1};
         if (p.b->rigid.kind != TOBI_PRESCRIBED) {
             p.counting = 1;
             push_all(&p, t);

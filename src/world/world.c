@@ -45,6 +45,16 @@ static tobi_status create_simulation(tobi_simulation *s, const tobi_world_def *d
     return tobi_exec_init(&s->exec, def->threads, err);
 }
 
+static tobi_status refuse_method(const char *name, tobi_error *err)
+{
+    char known[200] = "";
+    size_t used = 0;
+    for (int k = 0; tobi_method_at(k) && used < sizeof known; k++)
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", k ? ", " : "",
+                                 tobi_method_at(k)->name);
+    return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known are %s", name ? name : "", known);
+}
+
 tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def, tobi_world **world,
                               tobi_error *err)
 {
@@ -53,9 +63,7 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
     TOBI_NEED(def, "the definition");
     TOBI_TRY(tobi_param_check(&tobi_world_table, def, err));
     const tobi_method *method = tobi_method_find(def->method);
-    if (!method)
-        return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known is %s",
-                         def->method ? def->method : "", tobi_method_at(0)->name);
+    if (!method) return refuse_method(def->method, err);
     tobi_world *w = calloc(1, sizeof *w);
     if (!w) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a world");
     w->alive = TOBI_ALIVE;

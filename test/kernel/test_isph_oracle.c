@@ -136,7 +136,7 @@ static void run(tobi_kernel k, double *totals)
 typedef struct image { int64_t j; double x[3], r, displacement[3]; int flip[3]; int self; } image;
 typedef struct sums {
     double moment[6], concentration, gradient_c[3], product, divergence, difference, rest, row,
-           gradient[3], force[3], core[3], normal[3], slope[9], bend[3], count, cone, mean[3], all[3],
+           gradient[3], core[3], normal[3], slope[9], bend[3], count, cone, mean[3], all[3],
            plain[3];
 } sums;
 static void add_choices(int64_t i, const image *m, const double u[3], double f, int plain, sums *s);
@@ -190,7 +190,6 @@ static void add_pair(int64_t i, const image *m, sums *s)
         s->gradient_c[k] -= f*x[k];
         s->divergence -= jump*f*g[k];
         s->gradient[k] -= (p - own)*f*x[k];
-        if (side && !face) s->force[k] -= view.volume*(p + own)*f*x[k];
         if (m->r < 0.8*view.spacing) s->core[k] += 0.25*(0.8*view.spacing - m->r)*x[k]/m->r;
         s->bend[k] += jump*f;
         for (int c = 0; c < 3; c++) s->slope[3*k + c] -= jump*f*x[c];
@@ -421,7 +420,7 @@ static void follow_the_equations(int scalar)
         open_pool(2 + k%2, k/2%2, smoothing, body);
         if (scalar) kernel = &sph_kernels_scalar[sph_table_of(shape)];
         for (int n = 0; n < KERNELS; n++) {
-            double t[TOBI_TOTALS], force[3] = {0}, div = 0;
+            double t[TOBI_TOTALS], div = 0;
             check c = {kernels[n].name, 0};
             tobi_float4 *old = malloc((size_t)view.count*sizeof *old);
             memcpy(old, view.velocity, (size_t)view.count*sizeof *old);
@@ -436,12 +435,9 @@ static void follow_the_equations(int scalar)
             for (int64_t i = 0; i < view.count; i += all ? 1 : some) {
                 before = old[i];
                 sums s = sum_pairs(i);
-                for (int a = 0; a < 3; a++) force[a] += s.force[a];
                 if (!(view.gate[i] > 0)) div += fabs(s.divergence);
                 kernels[n].oracle(&c, i, &s);
             }
-            if (!strcmp(kernels[n].name, "isph_projection"))
-                for (int a = 0; a < 3; a++) compare(&c, t[1 + a], force[a], 1e4*view.volume/view.h);
             if (!strcmp(kernels[n].name, "isph_shift")) compare(&c, t[0], div, div + 1);
             if (!strcmp(kernels[n].name, "isph_body_force")) check_body_force(&c, t);
             if (!strcmp(kernels[n].name, "eisph_extent")) check_extent(&c, t);

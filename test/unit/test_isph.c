@@ -4,6 +4,7 @@
 #include "calls.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 #include <cmocka.h>
 
 static tobi_world_def make_def(double width)
@@ -295,6 +296,67 @@ static void a_body_that_jumps_costs_few_steps(void **state)
     tobi_world_destroy(world);
 }
 
+/* Two liquids that change places in a closed vessel, where particles soon lie in disorder. */
+static void sides_carry_the_weight(void **state)
+{
+    (void)state;
+    tobi_world_def w = make_def(0.8);
+    tobi_world *world;
+    tobi_step_info info;
+    double worst = 0;
+    w.domain_max[1] = 0.2;
+    w.spacing = 0.02;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    for (int k = 0; k < 2; k++) {
+        tobi_fluid_def fluid = tobi_default_fluid_def();
+        tobi_fill_def fill = tobi_default_fill_def();
+        fluid.name = k ? "fresh" : "salt";
+        fluid.density = k ? 1000 : 1200;
+        fill.box_min[0] = 0.4*k;
+        fill.box_max[0] = 0.4*(k + 1);
+        fill.box_max[1] = 0.2;
+        OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+    }
+    for (int step = 0; step < 200; step++) {
+        OK(tobi_world_step(world, 0, &info, &err));
+        worst = fmax(worst, fabs(info.wall_force[1]/info.weight + 1));
+    }
+    assert_true(info.kinetic_energy > 1);
+    if (!(worst < 0.005)) fail_msg("the force on the sides is off by %g of the weight", worst);
+    tobi_world_destroy(world);
+}
+
+/* Water slips along a round post that turns about its axis: it stays at rest. */
+static void a_round_post_that_turns_stirs_nothing(void **state)
+{
+    (void)state;
+    const double centre[3] = { 0.15, 0.15, 0 }, rate = 12;         /* rad/s */
+    tobi_world_def w = make_def(0.3);
+    tobi_body_def post = tobi_default_body_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_world *world;
+    tobi_motion *motion;
+    tobi_step_info info;
+    w.gravity[1] = 0;
+    fill.box_max[0] = fill.box_max[1] = 0.3;
+    post.name = "post";
+    post.sphere_radius = 0.08;
+    memcpy(post.sphere_centre, centre, sizeof centre);
+    OK(tobi_motion_rotation(centre, (double[3]){ 0, 0, 1 }, rate*180/M_PI, &motion, &err));
+    post.motion = tobi_motion_positions;
+    post.motion_user = motion;
+    post.motion_rigid = 1;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+    OK(tobi_world_add_body(world, &post, &err));
+    for (int step = 0; step < 100; step++) OK(tobi_world_step(world, 0, &info, &err));
+    const double speed = sqrt(2*info.kinetic_energy/(1000*(0.09 - M_PI*0.08*0.08)));
+    if (!(speed < 0.02*rate*0.08)) fail_msg("water of %g m/s beside a post of %g m/s", speed, rate*0.08);
+    tobi_world_destroy(world);
+    tobi_motion_free(motion);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -307,6 +369,8 @@ int main(void)
         cmocka_unit_test(a_body_that_stops_leaves_water_that_moves),
         cmocka_unit_test(stirred_water_gains_no_energy),
         cmocka_unit_test(a_body_that_jumps_costs_few_steps),
+        cmocka_unit_test(sides_carry_the_weight),
+        cmocka_unit_test(a_round_post_that_turns_stirs_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -370,6 +370,55 @@ static void first_step_before_a_gate(void **state)
     tobi_world_destroy(world);
 }
 
+static void fill_box(tobi_fill_def *f, const double box[4])
+{
+    *f = tobi_default_fill_def();
+    for (int a = 0; a < 2; a++) {
+        f->box_min[a] = box[a];
+        f->box_max[a] = box[2 + a];
+    }
+}
+
+/* A drop between a block and a body has a row without another particle, which has to converge as well. */
+static void a_drop_under_a_block(void **state)
+{
+    (void)state;
+    static const double ring[3][4] = {{0.06, 0.06, 0.14, 0.1}, {0.06, 0.05, 0.09, 0.06},
+                                      {0.1, 0.05, 0.14, 0.06}};
+    tobi_world_def w = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def water[2], block[3];
+    tobi_body_def floor = tobi_default_body_def();
+    tobi_step_info info;
+    tobi_world *world;
+    w.method = "isph";
+    w.dimension = 2;
+    w.spacing = 0.01;
+    w.domain_max[0] = w.domain_max[1] = floor.box_max[0] = 0.2;
+    floor.name = "floor";
+    floor.box_max[1] = 0.05;
+    fill_box(&water[0], (const double[]){0.09, 0.05, 0.1, 0.06});
+    fill_box(&water[1], (const double[]){0.15, 0.05, 0.2, 0.1});        /* a pool apart */
+    w.gravity[1] = -9.81;
+    w.gravity[2] = 0;
+    solid.youngs_modulus = 1e5;
+    solid.density = 2000;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_body(world, &floor, &err));
+    OK(tobi_world_add_fluid(world, &fluid, water, 2, &err));
+    for (int k = 0; k < 3; k++) {
+        fill_box(&block[k], ring[k]);
+        block[k].velocity[1] = -0.5;
+    }
+    OK(tobi_world_add_solid(world, &solid, block, 3, &err));
+    for (int step = 0; step < 60; step++) {
+        OK(tobi_world_step(world, 0, &info, &err));
+        assert_true(info.divergence_converged);
+    }
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -384,6 +433,7 @@ int main(void)
         cmocka_unit_test(parameters_of_solids),
         cmocka_unit_test(too_many_substeps),
         cmocka_unit_test(first_step_before_a_gate),
+        cmocka_unit_test(a_drop_under_a_block),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -85,7 +85,8 @@ static void worlds(void **state)
             "spacing: is 1.5 m, the domain has only 1 m in x");
     def = make_def();
     def.method = "magic";
-    REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID, "there is no method 'magic'");
+    REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID,
+            "there is no method 'magic'; known are dfsph, ");
     tobi_exec exec;
     REFUSED(tobi_exec_init(&exec, -1, &err), TOBI_INVALID, "threads is -1, allowed is 0 (all cores)");
     setenv("TOBIUO_ISA", "1", 1);

@@ -1,0 +1,36 @@
+/* The loops of a particle's look at the points of a body, compiled once per instruction set (isa_look.c). */
+#pragma once
+#include "core/body.h"
+#include "core/smoothing.h"
+#include "sph/boundary_points.h"
+#include "sph/couple.k.h"
+
+/* What the sums read besides the points: of the body and of the particle. */
+typedef struct tobi_look_view {
+    const tobi_body *body;
+    const tobi_smoothing_constants *smoothing;
+    double gravity[3];        /* m/s2, what the particle feels                                    */
+    int alone;                /* 1: no other thread looks at the body                             */
+} tobi_look_view;
+
+typedef struct tobi_look_loops {
+    /* Adds those of points [begin, end) to the list that face x and are nearer than the root of reach2. */
+    void (*list)(double *const row[TOBI_POINT_ROWS], int64_t begin, int64_t end, const double x[3],
+                 double reach2, tobi_facing_points *list);
+    /* Whether there is any. */
+    int (*any)(double *const row[TOBI_POINT_ROWS], int64_t begin, int64_t end, const double x[3],
+               double reach2);
+    /* Adds the listed points, by their weights, to link and entry, and marks them as wet and covered. */
+    void (*sum)(const tobi_look_view *v, const tobi_facing_points *list, tobi_boundary_link *link,
+                tobi_boundary_entry *entry);
+} tobi_look_loops;
+
+extern const tobi_look_loops tobi_look_loops_v2, tobi_look_loops_v3, tobi_look_loops_v4;
+
+/* How much of a point counts, by the particle's height above its plane and its distance from the body, m. A
+   particle beyond an edge would see the next face at once when it passes the plane of that face. */
+static inline double tobi_boundary_rise(double height, double distance, double spacing)
+{
+    const double width = distance < 0.25*spacing ? distance : 0.25*spacing;
+    return height < width ? height/width : 1;
+}

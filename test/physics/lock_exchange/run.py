@@ -1,0 +1,67 @@
+#!/usr/bin/python3
+"""Lock exchange: a heavy liquid beside a light one in a closed tank, the fronts against Benjamin's theory."""
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from harness import Case, fit_line, read_series, read_table, read_vtu
+
+case = Case("lock_exchange", "Lock exchange", """
+Salt water, 1020 kg/m3, beside fresh water, 1000 kg/m3, in a closed tank of depth H = 0.2 m, 4 H on either
+side of the gate, with walls that slip; by isph, dfsph and wcsph. The salt water runs along the floor, the
+fresh water under the lid. Speed: the line of least squares through the places of a front between 1.5 H from
+the gate and H from the wall, over sqrt(g' H)/2, g' = g (1 - 1000/1020). That is a current half as deep as the
+tank that loses no energy (Benjamin, J. Fluid Mech. 31 (1968) 209). A front that is slower is fitted up to the
+end of the run, 7 s. The front is the foremost particle nearer than three spacings to the floor, or to the lid.
+dfsph runs at two spacings, wcsph, whose steps are short, at one. Energy: the kinetic one at the end over the potential
+one that was set free; more than 1 would be made from nothing.""", methods=("dfsph", "wcsph"))
+G, H, HALF = 9.81, 0.2, 0.8
+THEORY = math.sqrt(G*(1 - 1000/1020)*H)/2
+END = 7                                            # s; by theory the fronts are at 3.4 H, 0.6 H from the walls
+
+
+def fronts(out, d):
+    """Times, and how far the salt water on the floor and the fresh water under the lid have come, m."""
+    times, floor, lid = [], [], []
+    for t, file in read_series(out):
+        data = read_vtu(file)
+        points = list(zip(data["Points"][0::3], data["Points"][1::3], data["material"]))
+        times.append(t)
+        floor.append(max(x for x, y, m in points if m == 0 and y < 3*d) + d/2 - HALF)
+        lid.append(HALF - min(x for x, y, m in points if m == 1 and y > H - 3*d) + d/2)
+    return times, floor, lid
+
+
+def speed(times, places):
+    """Over that of theory, on the way from 1.5 depths to 3, or to the end of the run; 0 if there is no such way."""
+    way = [(t, x) for t, x in zip(times, places) if 1.5*H <= x <= HALF - H]
+    if len(way) < 3:
+        return 0
+    return fit_line([t for t, x in way], [x for t, x in way])[0]/THEORY
+
+
+def exchange(n):
+    d = H/n
+    out = case.run(f"depth_{n}", "--spacing", d, "--until", END)
+    times, floor, lid = fronts(out, d)
+    heavy, light = speed(times, floor), speed(times, lid)
+    case.figure(f"{n} over the depth: speed on the floor over theory", heavy, "within 0.1", abs(heavy - 1) <= 0.1)
+    case.figure(f"{n} over the depth: speed under the lid over theory", light, "within 0.1", abs(light - 1) <= 0.1)
+    uneven = abs(heavy - light)/max(heavy, light) if light and heavy else math.inf
+    case.figure(f"{n} over the depth: difference of the two speeds", uneven, "<= 0.05", uneven <= 0.05)
+    history = read_table(out/"history.csv")
+    free = history["potential_energy"][0] - history["potential_energy"][-1]
+    share = history["kinetic_energy"][-1]/free if free > 0 else math.inf
+    case.figure(f"{n} over the depth: kinetic energy over potential energy set free", share, "<= 1", share <= 1)
+    case.hold(f"{n} over the depth: no particle is lost", max(history["particles_lost"]) == 0)
+    return times, [x/H for x in floor], [x/H for x in lid]
+
+
+curves = [("Benjamin 1968", [0, END], [0, THEORY*END/H], False)]
+sizes = {"dfsph": (20, 30), "wcsph": (20,)}
+for size in case.pick((12,), sizes.get(case.args.method, (20, 30, 40))):
+    at, below, above = exchange(size)
+    curves += [(f"floor, {size}", at, below, False), (f"lid, {size}", at, above, False)]
+case.plot("Way of the fronts over the depth", "t, s", "x/H", curves)
+case.finish()
