@@ -59,7 +59,7 @@ typedef struct tobi_body {
     double spacing;                  /* m, of the body's own particles                         */
     double color[3];                 /* RGB, 0 to 255, or -1; for pictures                     */
     int visible;
-    double opacity;                  /* of its surface, for pictures                           */
+    double opacity;                  /* of its surface, for pictures; 0: as tobi_looks has it   */
     tobi_motion_fn motion;           /* NULL = fixed                                           */
     void *motion_user;
     tobi_steer_fn steer;             /* NULL: the motion is not steered                        */

@@ -41,16 +41,26 @@ static tobi_status add_materials(const tobi_world *w, const tobi_system *s, tobi
     return TOBI_OK;
 }
 
+/* A vessel that has no opacity is of glass, so that pictures show the liquid in it; in 2-D its section is an
+   outline. */
+static void choose_surface(const tobi_body *b, int dimension, tobi_body_look *look)
+{
+    static const double glass[3] = { 190, 220, 225 };
+    const int is_glass = b->vessel && dimension == 3 && !(b->opacity > 0);
+    look->opacity = is_glass ? 0.15 : b->opacity > 0 ? b->opacity : 1;
+    memcpy(look->color, is_glass && b->color[0] < 0 ? glass : b->color, sizeof look->color);
+}
+
 static tobi_status add_bodies(const tobi_world *w, const tobi_record_name *names, tobi_looks *looks,
                               tobi_error *err)
 {
     for (int k = 0; k < w->sim.body_count; k++) {
         const tobi_body *b = &w->sim.bodies[k];
         tobi_body_look *look = &looks->bodies[looks->body_count++];
-        *look = (tobi_body_look){ .opacity = b->opacity, .visible = b->visible, .hollow = b->vessel };
+        *look = (tobi_body_look){ .visible = b->visible, .hollow = b->vessel };
+        choose_surface(b, looks->dimension, look);
         memcpy(look->name, names[k], sizeof look->name);
         snprintf(look->body, sizeof look->body, "%s", b->name);
-        memcpy(look->color, b->color, sizeof look->color);
         for (int64_t i = 0; i < b->mesh.vertex_count; i++)
             for (int a = 0; a < 3; a++)
                 look->rest[a] += b->mesh.vertices[i][a]/(double)b->mesh.vertex_count;

@@ -79,9 +79,12 @@ static const tobi_param body_rows[] = {
     { .key = "visible", BOOL, AT(tobi_body_def, visible), .def = { 1 },
       .doc = "Whether pictures show the body." },
     { .key = "color", COLOR, AT(tobi_body_def, color), .text = "automatic",
-      .doc = "Colour in pictures, red, green and blue; automatic goes by the number of the body." },
-    { .key = "opacity", REAL, AT(tobi_body_def, opacity), .def = { 1 }, RANGE(0, 1), .unit = "1",
-      .doc = "Share of the light that its surface keeps away in pictures; below 1 it looks like glass." },
+      .doc = "Colour in pictures, red, green and blue; automatic goes by the number of the body, and is that "
+             "of glass for a vessel of automatic opacity." },
+    { .key = "opacity", REAL, AT(tobi_body_def, opacity), RANGE(0.01, 1), .positive = true, .unit = "1",
+      .text = "automatic",
+      .doc = "Share of the light that its surface keeps away in pictures; below 1 it looks like glass. "
+             "Automatic is 1, of a vessel in 3-D 0.15." },
     { .key = "dynamics", CHOICE("prescribed|free|controlled", 3), AT(tobi_body_def, dynamics),
       .doc = "What moves the body: its motion, if it has one; the forces on it; or these and its control "
              "program. With forces a motion changes the shape alone: docs/swimmers.md." },

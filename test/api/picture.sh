@@ -67,7 +67,7 @@ expect 0 "" picture wet --out a.png --set output.picture.field=pressure
 expect 0 "" picture wet --out b.png --set output.picture.field=pressure --set output.picture.isolines=7
 check "isolines are drawn" test "$(cmp -s a.png b.png; echo $?)" = 1
 expect 1 "is 101, allowed is 0 to 100" picture wet --set output.picture.isolines=101
-expect 1 "is 2, allowed is 0 to 1" run wet.json --out no --set "bodies[0].opacity=2"
+expect 1 "is 2, allowed is 0.01 to 1, or \"automatic\"" run wet.json --out no --set "bodies[0].opacity=2"
 
 camera='output.camera={"position": [0.32, 0.1, 0.1], "look_at": [0.2, 0.1, 0.1], "angle": 30}'
 expect 0 "the camera is inside of the body 'post', which hides all else" picture dam --set "$camera"
