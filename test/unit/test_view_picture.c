@@ -150,25 +150,6 @@ static void glass_lets_light_through(void **state)
     free(opaque), free(none), free(glass), free(again);
 }
 
-/* The surface of water at a pane goes in and out of it: the pane is before the water all the same. */
-static void water_at_a_pane(void **state)
-{
-    (void)state;
-    static double corner[4][3] = { { 0.4, 0, 0.1 }, { 0.6, 0, 0.1 }, { 0.4, 0, 0.8 }, { 0.6, 0, 0.8 } };
-    static const int32_t half[2][3] = { { 0, 1, 2 }, { 1, 3, 2 } };
-    const tobi_picture_mesh m = { 4, corner, 2, half, { 0.9f, 0.1f, 0.1f }, 0.7f, 0, NULL, NULL };
-    tobi_picture f = make_frame();
-    unsigned char *pane[2];
-    f.meshes = &m;
-    for (int k = 0; k < 2; k++) {
-        for (int c = 0; c < 4; c++) corner[c][1] = (k - 0.5)*0.6/SIDE;
-        pane[k] = draw(&f);
-    }
-    for (int y = H/2 + 20; y < H/2 + 30; y++)
-        assert_true(abs(redness(pixel(pane[0], W/2, y)) - redness(pixel(pane[1], W/2, y))) <= 3);
-    free(pane[0]), free(pane[1]);
-}
-
 /* The eye looks along y at the middle of the cube. What is before a plane across that is gone, and the cut is
    filled, unless the cube is hollow. */
 static void a_plane_cuts_bodies(void **state)
@@ -608,7 +589,6 @@ int main(void)
         cmocka_unit_test(place_does_not_matter), cmocka_unit_test(bytes_are_those_of_the_file),
         cmocka_unit_test(fields_have_colours), cmocka_unit_test(maps_have_names),
         cmocka_unit_test(background_is_transparent), cmocka_unit_test(glass_lets_light_through),
-        cmocka_unit_test(water_at_a_pane),
         cmocka_unit_test(a_plane_cuts_bodies), cmocka_unit_test(lines_are_drawn),
             cmocka_unit_test(flat_scenes_are_discs),
         cmocka_unit_test(flat_vessels_are_outlines), cmocka_unit_test(flat_scenes_have_isolines),
