@@ -250,7 +250,8 @@ static json_t *make_part(const tobi_part *part)
     return schema;
 }
 
-/* A region or a body is a box, a mesh or (regions) a sphere: the table cannot say that one is needed. */
+/* A region or a body is a box, a mesh, one of the other shapes or, of regions, what a vessel holds: the table
+   cannot say that one is needed. */
 static void require_region(json_t *schema)
 {
     json_t *properties = json_object_get(schema, "properties"), *box = json_object_get(properties, "box");
@@ -271,6 +272,8 @@ static void require_region(json_t *schema)
         require(shape, more[k][1]);
         json_array_append_new(shapes, json_pack("{s[s]}", "required", more[k][0]));
     }
+    if (json_object_get(properties, "level"))
+        json_array_append_new(shapes, json_pack("{s[s]}", "required", "vessel"));
     json_object_set_new(schema, "oneOf", shapes);
 }
 

@@ -203,9 +203,12 @@ typedef struct painting {
     const geometry *water;       /* of glass: what may be before or behind it, or NULL             */
     const tiles *water_tiles;
     bool    over;                /* of glass: only what is before the water, else only behind it   */
+    float   film;                /* m, of glass: so little behind water is before it: the surface of water
+                                    at a wall goes in and out of the wall                          */
 } painting;
 tobi_status view_paint(canvas *c, const geometry *g, tobi_range kernel, vec *out, tobi_error *err);
-tobi_status view_paint_glass(canvas *c, const geometry *g, const geometry *water, bool over, tobi_error *err);
+tobi_status view_paint_glass(canvas *c, const geometry *g, const geometry *water, bool over, float film,
+                             tobi_error *err);
 
 /* Straight lines in view space. */
 typedef struct segments { vec (*end)[2]; int64_t count, room; } segments;

@@ -425,7 +425,8 @@ static void add_glass(const painting *p, int32_t item, const square *q, const fl
             const float cover = cover_pixel(&f, px, py, c->samples);
             if (!(cover > 0)) continue;
             const float near = nearness_at(&f, px + 0.5f, py + 0.5f), z = depth_of(&c->camera, near);
-            const bool over = near > front[k] && !c->submerged;
+            const bool over = !c->submerged &&
+                              (near > front[k] || z < depth_of(&c->camera, front[k]) + p->film);
             if (over != p->over || z >= c->depth[(int64_t)py*c->width + (int64_t)px]) continue;
             b->pixel[b->count] = find_layer(t, k, &f, near);
             b->weight[b->count] = cover;

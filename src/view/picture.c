@@ -506,13 +506,14 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     TOBI_TRY(view_paint(c, &s->solids, c->kernels->opaque_tiles, c->color, err));
     view_draw_box(c, f, false);
     const geometry *water = s->water.faces > 0 ? &s->water : NULL;
+    const float film = 2*(float)f->radius;
     if (s->glass.faces > 0 && (water || c->submerged))
-        TOBI_TRY(view_paint_glass(c, &s->glass, water, false, err));
+        TOBI_TRY(view_paint_glass(c, &s->glass, water, false, film, err));
     end_stage(s, STAGE_SOLIDS);
     if (has_water(s)) TOBI_TRY(draw_water(s, err));
     end_stage(s, STAGE_WATER);
     if (c->front) view_draw_box(c, f, true);
-    if (s->glass.faces > 0) TOBI_TRY(view_paint_glass(c, &s->glass, water, true, err));
+    if (s->glass.faces > 0) TOBI_TRY(view_paint_glass(c, &s->glass, water, true, film, err));
     TOBI_TRY(draw_lines(s, err));
     if (f->streamlines > 0 && f->flow && !view_draw_streamlines(c, f)) return no_memory(f, err);
     if (f->velocities && !view_draw_arrows(c, f)) return no_memory(f, err);

@@ -94,12 +94,13 @@ tobi_status view_paint(canvas *c, const geometry *g, tobi_range kernel, vec *out
     return TOBI_OK;
 }
 
-tobi_status view_paint_glass(canvas *c, const geometry *g, const geometry *water, bool over, tobi_error *err)
+tobi_status view_paint_glass(canvas *c, const geometry *g, const geometry *water, bool over, float film,
+                             tobi_error *err)
 {
     tiles own = { 0 }, other = { 0 };
     tobi_status status = view_tiles_build(&own, c, g, err);
     if (status == TOBI_OK && water) status = view_tiles_build(&other, c, water, err);
-    const painting view = { c, g, &own, c->color, water, &other, over };
+    const painting view = { c, g, &own, c->color, water, &other, over, film };
     if (status == TOBI_OK)
         tobi_loop(c->threads, (int64_t)own.across*own.down, 1, c->kernels->glass_tiles, &view);
     view_tiles_free(&own);

@@ -105,11 +105,40 @@ static void many_sheets(void **state)
     tobi_image_free(image);
 }
 
+/* The surface of water at a pane goes in and out of it: the pane is before the water all the same. */
+static void water_at_a_pane(void **state)
+{
+    (void)state;
+    enum { N = 16 };
+    static double position[N*N*N][3];
+    static uint8_t rgb[2][SIDE][SIDE][3];
+    tobi_picture f = tobi_default_picture();
+    tobi_error err = { 0 };
+    for (int i = 0; i < N*N*N; i++)
+        for (int a = 0, k = i; a < 3; a++, k /= N) position[i][a] = (k%N + 0.5)/N;
+    f.positions = position, f.particle_count = N*N*N, f.radius = 0.5/N;
+    f.width = f.height = SIDE, f.threads = 1;
+    f.has_camera = 1;
+    for (int a = 0; a < 3; a++) f.box_max[a] = 1, f.eye[a] = f.target[a] = 0.5;
+    f.eye[1] = -3;
+    for (int k = 0; k < 2; k++) {
+        const sheet s = make_sheet((k - 0.5)*0.6/N, 0, 0);
+        const tobi_picture_mesh pane = { .vertex_count = 4, .vertices = s.vertex, .triangle_count = 2,
+                                         .triangles = s.triangle, .transparency = 0.3f,
+                                         .color = { 0.9f, 0.1f, 0.1f } };
+        f.meshes = &pane, f.mesh_count = 1;
+        if (tobi_picture_draw(&f, &rgb[k][0][0][0], &err)) fail_msg("%s", err.text);
+    }
+    for (int y = SIDE/2 - 8; y < SIDE/2 + 8; y++)
+        for (int c = 0; c < 3; c++) assert_true(abs(rgb[0][y][SIDE/2][c] - rgb[1][y][SIDE/2][c]) <= 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_near_shows_more),
         cmocka_unit_test(many_sheets),
+        cmocka_unit_test(water_at_a_pane),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
