@@ -1,6 +1,6 @@
 #!/bin/bash
 # Installs what is missing, builds the release preset with its tests, runs them.
-# usage: ./test.sh                 everything, at most ten minutes with the build
+# usage: ./test.sh                 everything, about ten minutes with the build
 #        ./test.sh NAME            only the tests whose name matches (a regular expression)
 #        ./test.sh --slow [CASE] [--stale] [--reference DIR]
 #                                  physics cases at reference size; rows and plots go to docs/validation.
@@ -13,7 +13,7 @@ set -uo pipefail
 from=$PWD      # where a relative folder starts
 cd "$(dirname "$0")"
 begin=$SECONDS
-limit=${TOBIUO_TEST_LIMIT:-590}      # s, for the whole of an ordinary run
+limit=${TOBIUO_TEST_LIMIT:-690}      # s, for the whole of an ordinary run: a slow machine is no failure
 reference=${TOBIUO_REFERENCE:-}
 python=/usr/bin/python3
 [ -x $python ] || python=python3

@@ -156,7 +156,7 @@ def at(scene, path):
 
 def damage(scene):
     """(what was done, the damaged scene), one damage each."""
-    for path in list(places(scene)):
+    for turn, path in enumerate(places(copy.deepcopy(scene))):
         if path == ("$schema",):
             continue
         old = at(scene, path)
@@ -173,7 +173,7 @@ def damage(scene):
         if isinstance(path[-1], int) and path[-1] > 0:
             continue                # one entry of a list stands for all
         others = ["no such word", None, {}, [], -1, 1e300]
-        for other in others:
+        for other in others[turn%2::2]:       # every second one: a run of all takes half a minute
             if type(other) is type(old) and not isinstance(old, (str, int, float)):
                 continue
             if path[-1] in ("name", "mesh", "script", "fields") and isinstance(other, str):
