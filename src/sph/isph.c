@@ -54,7 +54,7 @@ tobi_status isph_create_state(tobi_system *s, const tobi_isph_def *def, tobi_err
     m->solver.coupled = tobi_couple_any(s);
     m->solver.view.kinematic = m->view.kinematic;
     if (sph_phases_have_tension(s)) m->solver.view.interface_tension = m->view.interface_tension;
-    return TOBI_OK;
+    return tobi_exec_reserve(&s->sim->exec, (int64_t)TOBI_PROBE_PIECES*TOBI_BLOCK, err);
 }
 
 static tobi_status create(tobi_system *s, tobi_error *err) { return isph_create_state(s, s->def, err); }
@@ -265,7 +265,7 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
     without.acceleration.acts = 0;
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
     memcpy(s->info.wall_force, friction, sizeof s->info.wall_force);
-    memset(m->side_force, 0, sizeof m->side_force);
+    m->sides_due = 1;
     tobi_boundary_load(s);
     isph_forces_load(&m->solver, s);
     sph_soft_load(s);
@@ -289,16 +289,22 @@ void isph_move(tobi_system *s)
     sph_use_dt(s, &m->view);
 }
 
-/* Eq. (11), of the present state, where somebody asks. */
+/* Eq. (11), where somebody asks, once after a step: then the lists are those of the particles. */
 void isph_measure(tobi_system *s)
 {
     isph *m = s->state;
-    double force[3] = { 0 };
-    if (m->memory.started > 0) tobi_probe_sides(s, force);
-    for (int a = 0; a < 3; a++) {
-        s->info.wall_force[a] += force[a] - m->side_force[a];
-        m->side_force[a] = force[a];
-    }
+    double force[3];
+    if (!m->sides_due) return;
+    m->sides_due = 0;
+    tobi_probe_sides(s, force);
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] += force[a];
+}
+
+/* A load brings its forces with it. */
+void isph_follow_gravity(tobi_system *s, int loaded)
+{
+    isph *m = s->state;
+    if (loaded) m->sides_due = 0;
 }
 
 tobi_status isph_refresh(tobi_system *s, tobi_error *err)

@@ -20,7 +20,7 @@ typedef struct isph {
        liquid along gravity; started: 1 after the first solve */
     struct { double speed, vessel, failures, depth, started; } memory;
     double motion_dt;                /* s, the step that motion alone allows                        */
-    double side_force[3];            /* N, of the pressure on the sides, as far as it is in the info */
+    int sides_due;                   /* 1: the info has no pressure on the sides of the domain yet  */
 } isph;
 
 tobi_status isph_create_state(tobi_system *s, const tobi_isph_def *def, tobi_error *err);
@@ -35,6 +35,7 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err);
 void isph_move(tobi_system *s);
 tobi_status isph_refresh(tobi_system *s, tobi_error *err);
 void isph_measure(tobi_system *s);
+void isph_follow_gravity(tobi_system *s, int loaded);
 void isph_derive(tobi_system *s, const char *field);
 void isph_read(const tobi_system *s, const char *field, int64_t i, double *out);
 int64_t isph_count_bytes(const tobi_system *s);
@@ -45,5 +46,5 @@ void isph_free_state(void *state);
     .fields = &sph_field_list, .outputs = isph_outputs, .needs = sph_needs, .remember = isph_remember,   \
     .take_back = isph_take_back, .forces = isph_forces, .solve = isph_solve, .move = isph_move,     \
     .finish = sph_finish, .refresh = isph_refresh, .read = isph_read, .derive = isph_derive,         \
-    .measure = isph_measure, .memory = isph_list_memory, .bytes = isph_count_bytes,                 \
+    .measure = isph_measure, .follow_gravity = isph_follow_gravity, .memory = isph_list_memory, .bytes = isph_count_bytes,                 \
     .free = isph_free_state,

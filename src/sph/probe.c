@@ -247,39 +247,44 @@ double tobi_probe_place(const tobi_system *s, const double x[3], double normal[3
     return measure_place(&wall, wall.foot) + sph_hydrostatic(s, local);
 }
 
-/* A side of the domain, a place per spacing; items are rows of places. */
+/* A side of the domain as a lattice of places; items are pieces of its rows, as many whatever its length. */
 typedef struct side { const tobi_system *s; int axis, other, end; int64_t rows, columns; } side;
 
-static void press_row(const void *view, int64_t begin, int64_t end, double *totals)
+static void press_pieces(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const side *w = view;
-    const tobi_box *box = &w->s->box;
+    const double *size = w->s->box.size;
     const int along = 3 - w->axis - w->other;
+    const int64_t first = w->rows*begin/TOBI_PROBE_PIECES, stop = w->rows*end/TOBI_PROBE_PIECES;
     membrane m = { .s = w->s };
     m.normal[w->axis] = w->end ? -1 : 1;
-    for (int64_t i = begin; i < end; i++)
+    for (int64_t i = first; i < stop; i++)
         for (int64_t k = 0; k < w->columns; k++) {
             double y[3] = { 0 };
-            y[w->axis] = w->end ? box->size[w->axis] : 0;
-            y[w->other] = ((double)i + 0.5)*box->size[w->other]/(double)w->rows;
-            if (w->columns > 1) y[along] = ((double)k + 0.5)*box->size[along]/(double)w->columns;
+            y[w->axis] = w->end ? size[w->axis] : 0;
+            y[w->other] = ((double)i + 0.5)*size[w->other]/(double)w->rows;
+            if (w->s->box.dimension == 3) y[along] = ((double)k + 0.5)*size[along]/(double)w->columns;
             totals[0] -= measure_place(&m, y)*m.normal[w->axis];
         }
 }
 
+static double press_side(tobi_system *s, int axis, int end)
+{
+    const double *size = s->box.size, d = s->smoothing.spacing;
+    const int dimension = s->box.dimension, other = (axis + 1) % dimension;
+    const double length = size[other], width = dimension == 3 ? size[3 - axis - other] : 1;
+    const side w = { s, axis, other, end, (int64_t)ceil(length/d - 1e-6),
+                     dimension == 3 ? (int64_t)ceil(width/d - 1e-6) : 1 };
+    double t[TOBI_TOTALS];
+    tobi_launch_each(&s->sim->exec, TOBI_HOST(press_pieces, 1, 0), &w, TOBI_PROBE_PIECES, t);
+    return t[0]*length*width/(double)(w.rows*w.columns);
+}
+
 void tobi_probe_sides(tobi_system *s, double force[3])
 {
-    const tobi_box *box = &s->box;
-    for (int a = 0; a < 3; a++) force[a] = 0;
-    for (int a = 0; a < box->dimension; a++)
-        for (int end = 0; end < 2 && !box->periodic[a]; end++) {
-            const int other = (a + 1) % box->dimension, along = 3 - a - other;
-            const double d = s->smoothing.spacing, length = box->size[other],
-                         width = box->dimension == 3 ? box->size[along] : 1;
-            side w = { s, a, other, end, (int64_t)ceil(length/d - 1e-6),
-                       box->dimension == 3 ? (int64_t)ceil(width/d - 1e-6) : 1 };
-            double t[TOBI_TOTALS];
-            tobi_launch(&s->sim->exec, TOBI_HOST(press_row, 1, 0), &w, 0, w.rows, t);
-            force[a] += t[0]*length*width/(double)(w.rows*w.columns);
-        }
+    for (int a = 0; a < 3; a++) {
+        force[a] = 0;
+        for (int end = 0; a < s->box.dimension && end < 2 && !s->box.periodic[a]; end++)
+            force[a] += press_side(s, a, end);
+    }
 }

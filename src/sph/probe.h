@@ -16,5 +16,9 @@ int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, 
    of the wall. 0 where there is no fluid. */
 double tobi_probe_place(const tobi_system *s, const double x[3], double normal[3]);
 
-/* N, of the pressure on all sides of the domain: the sum over places, one per spacing. */
+/* Of a launch over a side: the caller has reserved TOBI_BLOCK times as many. */
+enum { TOBI_PROBE_PIECES = 64 };
+
+/* N, of the pressure on all sides of the domain: the sum over places, one per spacing. Between a step and
+   what moves or loads particles. */
 void tobi_probe_sides(tobi_system *s, double force[3]);

@@ -326,6 +326,30 @@ static void sides_carry_the_weight(void **state)
     tobi_world_destroy(world);
 }
 
+/* A side with more rows of places than a launch over the particles has blocks. A load brings its force along. */
+static void sides_of_a_long_tank(void **state)
+{
+    (void)state;
+    tobi_world *world[2];
+    tobi_step_info info[2];
+    tobi_world_def w = make_def(60);
+    for (int k = 0; k < 2; k++) {
+        OK(tobi_world_create(&w, NULL, &world[k], &err));
+        add_water(world[k]);
+    }
+    for (int step = 0; step < 3; step++) OK(tobi_world_step(world[0], 0, NULL, &err));
+    info[0] = *tobi_world_info(world[0]);
+    assert_true(info[0].wall_force[1] < -0.5*info[0].weight);
+    assert_true(tobi_world_info(world[0])->wall_force[1] == info[0].wall_force[1]);
+    OK(tobi_world_save(world[0], "long_tank.h5", &err));
+    OK(tobi_world_load(world[1], "long_tank.h5", &err));
+    assert_true(tobi_world_info(world[1])->wall_force[1] == info[0].wall_force[1]);
+    for (int k = 0; k < 2; k++) OK(tobi_world_step(world[k], 0, &info[k], &err));
+    assert_true(info[0].wall_force[1] == info[1].wall_force[1]);
+    for (int k = 0; k < 2; k++) tobi_world_destroy(world[k]);
+    remove("long_tank.h5");
+}
+
 /* Water slips along a round post that turns about its axis: it stays at rest. */
 static void a_round_post_that_turns_stirs_nothing(void **state)
 {
@@ -370,6 +394,7 @@ int main(void)
         cmocka_unit_test(stirred_water_gains_no_energy),
         cmocka_unit_test(a_body_that_jumps_costs_few_steps),
         cmocka_unit_test(sides_carry_the_weight),
+        cmocka_unit_test(sides_of_a_long_tank),
         cmocka_unit_test(a_round_post_that_turns_stirs_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
