@@ -284,7 +284,7 @@ typedef struct tobi_body_def {
     int    visible;             /* 0: left out of pictures                                           */
     double color[3];            /* RGB, 0 to 255, in pictures; all -1 = by its number                */
     const char *texture;        /* path: PNG that pictures put on a mesh with coordinates; NULL = none */
-    double opacity;             /* 1, up to 1, of its surface in pictures; 0: 1, of a vessel that of glass */
+    double opacity;             /* 1, up to 1, in pictures; 0 chooses: 0.15 of a vessel in 3-D, else 1 */
     double contact_angle;       /* degrees, in the liquid                                            */
     tobi_motion_fn motion;      /* NULL = fixed                                                      */
     void  *motion_user;         /* handed to motion; owned by the caller, must outlive the world     */

@@ -568,7 +568,7 @@ static void advance_free(tobi_body *b)
    vessel that turns about its axis does not accelerate what slips along it. */
 static void carry_before(tobi_body *b, double dt)
 {
-    for (int32_t k = 0; k < b->mesh.vertex_count; k++) {
+    for (int64_t k = 0; k < b->mesh.vertex_count; k++) {
         double more[3];
         vec3_cross(more, b->info.angular_velocity, b->vertex_before[k]);
         vec3_add_scaled(b->vertex_before[k], b->vertex_before[k], dt, more);

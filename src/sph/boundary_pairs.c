@@ -173,16 +173,23 @@ static int is_marked(const tobi_system *s, int32_t i, int32_t j)
     return 0;
 }
 
+/* The list of the particle i whose last link is k, where there are pairs to cut; else NULL. */
+static int32_t *list_to_cut(const tobi_system *s, int64_t k, int32_t *i, int *count)
+{
+    const tobi_boundary_link *own = last_of(s, k);
+    if (!own || !own->cut) return NULL;
+    *i = own->particle;
+    return list_of(&s->cells, *i, count);
+}
+
 /* Marks them in the list of the higher row, too. */
 static void answer_pairs(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     for (int64_t k = begin; k < end; k++) {
-        const tobi_boundary_link *own = last_of(s, k);
-        if (!own || !own->cut) continue;
-        const int32_t i = own->particle;
-        int count;
-        int32_t *list = list_of(&s->cells, i, &count);
+        int32_t i;
+        int count = 0;
+        int32_t *list = list_to_cut(s, k, &i, &count);
         for (int g = 0; g < count; g++) {
             const int32_t j = list[g];
             if (j >= 0 && j < i && is_marked(s, j, i)) __atomic_store_n(&list[g], ~j, __ATOMIC_RELAXED);
@@ -196,11 +203,9 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
     tobi_boundary_links *n = &sph_of(s)->links;
     int64_t cut = 0;
     for (int64_t k = begin; k < end; k++) {
-        const tobi_boundary_link *own = last_of(s, k);
-        if (!own || !own->cut) continue;
-        const int32_t i = own->particle;
-        int count;
-        int32_t *list = list_of(&s->cells, i, &count);
+        int32_t i;
+        int count = 0;
+        int32_t *list = list_to_cut(s, k, &i, &count);
         for (int g = 0; g < count; g++) {
             if (list[g] >= 0) continue;
             int32_t fixed[3];

@@ -155,25 +155,25 @@ def at(scene, path):
 
 
 def damage(scene):
-    """(what was done, the damaged scene), one damage each."""
-    for turn, path in enumerate(places(copy.deepcopy(scene))):
+    """(what was done, below which key of the scene, the damaged scene), one damage each."""
+    for path in list(places(scene)):
         if path == ("$schema",):
             continue
         old = at(scene, path)
         if isinstance(old, dict) and path[-1:] != ("params",):
             new = copy.deepcopy(scene)
             at(new, path)["nonsense"] = 1
-            yield f"{path} + unknown key", new
+            yield f"{path} + unknown key", path[:1], new
         if not path:
             continue
         if isinstance(path[-1], str):
             new = copy.deepcopy(scene)
             del at(new, path[:-1])[path[-1]]
-            yield f"{path} removed", new
+            yield f"{path} removed", path[:1], new
         if isinstance(path[-1], int) and path[-1] > 0:
             continue                # one entry of a list stands for all
         others = ["no such word", None, {}, [], -1, 1e300]
-        for other in others[turn%2::2]:       # every second one: a run of all takes half a minute
+        for other in others:
             if type(other) is type(old) and not isinstance(old, (str, int, float)):
                 continue
             if path[-1] in ("name", "mesh", "script", "fields") and isinstance(other, str):
@@ -182,7 +182,7 @@ def damage(scene):
                 continue
             new = copy.deepcopy(scene)
             at(new, path[:-1])[path[-1]] = other
-            yield f"{path} = {other!r}", new
+            yield f"{path} = {other!r}", path[:1], new
 
 
 def check_schema(library):
@@ -194,6 +194,13 @@ def check_schema(library):
     schema = json.loads(library.describe("schema"))
     jsonschema.Draft7Validator.check_schema(schema)
     validator = jsonschema.Draft7Validator(schema)
+    parts = schema["properties"]
+    whole = jsonschema.Draft7Validator({**schema, "properties": dict.fromkeys(parts, {})})
+
+    def accepts(damaged, keys):         # as validator.is_valid, without the keys that are whole
+        return whole.is_valid(damaged) and all(validator.evolve(schema=parts[key]).is_valid(damaged[key])
+                                               for key in keys if key in damaged)
+
     failed = shipped = refused = kept = 0
     for file in sorted((ROOT / "scenes").glob("*/*.json")):
         for error in validator.iter_errors(json.loads(without_comments(file.read_text()))):
@@ -204,11 +211,11 @@ def check_schema(library):
     for error in validator.iter_errors(scene):
         print("the full scene:", list(error.path), error.message)
         failed += 1
-    for what, damaged in damage(scene):
+    for what, keys, damaged in damage(scene):
         pathlib.Path("full/damaged.json").write_text(json.dumps(damaged))
         lines = library.load("full/damaged.json")[0]
         reader = [line for line in lines if not READER_ONLY.search(line)]
-        by_schema = not validator.is_valid(damaged)
+        by_schema = not accepts(damaged, keys)
         refused += by_schema
         kept += not by_schema
         if by_schema != bool(reader) and not (by_schema and lines):

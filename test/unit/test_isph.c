@@ -326,7 +326,7 @@ static void sides_carry_the_weight(void **state)
     tobi_world_destroy(world);
 }
 
-/* A side with more rows of places than a launch over the particles has blocks. A load brings its force along. */
+/* A side with more rows of places than a launch over the particles has blocks. A load brings its force. */
 static void sides_of_a_long_tank(void **state)
 {
     (void)state;
@@ -350,7 +350,8 @@ static void sides_of_a_long_tank(void **state)
     remove("long_tank.h5");
 }
 
-/* Water slips along a round post that turns about its axis: it stays at rest. */
+/* Water slips along a round post that turns about its axis: it stays at rest, but for what facets of 7.5 degrees
+   stir. */
 static void a_round_post_that_turns_stirs_nothing(void **state)
 {
     (void)state;
