@@ -350,8 +350,8 @@ static void sides_of_a_long_tank(void **state)
     remove("long_tank.h5");
 }
 
-/* Water slips along a round post that turns about its axis: it stays at rest, but for what facets of 7.5 degrees
-   stir. */
+/* Water slips along a round post that turns about its axis: it stays at rest, but for what facets of 7.5
+   degrees stir. */
 static void a_round_post_that_turns_stirs_nothing(void **state)
 {
     (void)state;

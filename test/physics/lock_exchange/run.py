@@ -18,6 +18,7 @@ dfsph runs at two spacings, wcsph, whose steps are short, at one. Energy: the ki
 one that was set free; more than 1 would be made from nothing.""", methods=("dfsph", "wcsph"))
 G, H, HALF = 9.81, 0.2, 0.8
 THEORY = math.sqrt(G*(1 - 1000/1020)*H)/2
+SCENE = pathlib.Path(__file__).resolve().parents[3]/"scenes"/"lock_exchange"/"scene.json"
 END = 7                                            # s; by theory the fronts are at 3.4 H, 0.6 H from the walls
 
 
@@ -43,7 +44,8 @@ def speed(times, places):
 
 def exchange(n):
     d = H/n
-    out = case.run(f"depth_{n}", "--spacing", d, "--until", END)
+    out = case.run(f"depth_{n}", "--spacing", d, "--until", END, "--set", "output.interval=0.1", "--set",
+                   "output.frames=false", scene=SCENE)
     times, floor, lid = fronts(out, d)
     heavy, light = speed(times, floor), speed(times, lid)
     case.figure(f"{n} over the depth: speed on the floor over theory", heavy, "within 0.1", abs(heavy - 1) <= 0.1)
