@@ -1,5 +1,6 @@
 /* The smoothing kernels once more, in double and as their papers write them. */
 #pragma once
+#include "core/smoothing.k.h"
 #include <math.h>
 
 /* max(x, 0)^n */

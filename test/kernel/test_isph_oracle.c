@@ -1,9 +1,8 @@
 /* The kernels of isph: in lanes and as scalars (what CUDA compiles) against sums over all pairs and explicit
    images in double, and the same bits on every instruction set. Then what the matrix and the operators
    promise. */
-#define TOBI_SCALAR_LANES
-#define TOBI_ISA scalar
-#include "sph/isa_sph.c"
+#include "sph/kernels.h"
+#include "sph/isph.k.h"
 #include "core/smoothing.h"
 #include "kernel/smoothing_oracle.h"
 #include "unit/poisson_rig.h"
@@ -15,6 +14,7 @@
 
 static poisson pool;
 static isph_view view;
+extern const sph_kernels sph_kernels_scalar[SPH_TABLES];      /* sph_scalar.c */
 static const sph_kernels *kernel;
 static int shape;
 static tobi_smoothing_constants scaled;

@@ -1,9 +1,7 @@
 /* Kernels of several fluids (phases.k.h) against their equations in double over all pairs, in the order of a
    step: each sees what the kernel before it made. Then the same bits on every instruction set. */
-#define TOBI_SCALAR_LANES
-#define TOBI_ISA scalar
-#include "sph/isa_sph.c"
 #pragma GCC diagnostic ignored "-Wunused-function"     /* the rig has the oracles of all kernels */
+#include "sph/phases.k.h"
 #include "kernel/sph_rig.h"
 #include <setjmp.h>
 #include <stdarg.h>

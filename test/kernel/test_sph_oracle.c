@@ -1,15 +1,16 @@
 /* Every kernel of sph/kernels.def: against the equations in double over all pairs (sph_oracle.h),
    against its own scalar-lane reading (what CUDA compiles), and the same bits on every instruction
    set. Then what the operator promises: symmetry, momentum, exactness on the lattice. */
-#define TOBI_SCALAR_LANES
-#define TOBI_ISA scalar
-#include "sph/isa_sph.c"
+#include "sph/kernels.h"
 #include "sph/state.h"
 #include "kernel/sph_rig.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <cmocka.h>
+
+/* sph_scalar.c. */
+extern const sph_kernels sph_kernels_scalar[SPH_TABLES];
 
 typedef void (*oracle_fn)(const oracle *o, const row *in, row *out, double *totals);
 typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entry;
