@@ -9,8 +9,8 @@
    - "key[0]", "key[1]" are the entries of one list in a scene; one value alone stands for all.
    - TOBI_PARAM_TEXT: unit "name", "method" (the name of one), "path" (a file, looked up beside the
      scene), "names" (a list, of particle fields) or "text" (anything in one line).
-   - Numbers: text, if set, is a word that may be written for the value 0 ("adaptive", "all"); of a
-     number that must be positive only the word stands for it, and a written 0 is refused.
+   - Numbers: text, if set, is a word that stands for 0 ("adaptive", "all"), or for a default below the range
+     where 0 is a value as any other. A written 0 has to be in the range.
    - TOBI_PARAM_VEC3: text, if set, is a word for the default, which may lie out of the range
      ("automatic" for a colour).
    - TOBI_PARAM_VEC3 that must be positive (a scale) may be written as one number. */
@@ -37,7 +37,7 @@ typedef struct tobi_param {
     size_t offset;               /* of the member in its definition struct                       */
     double def[3];               /* default (first element for scalars; index for choices)       */
     double min, max;             /* allowed range per component, inclusive; NaN of texts         */
-    int positive;                /* 1: 0 is not allowed, even where a word stands for it         */
+    int positive;                /* 1: a scene may not write 0                                   */
     int required;                /* 1: a scene must give it                                       */
     const char *unit;            /* "m", "Pa s", "1"                                              */
     const char *choices;         /* "slip|no-slip|periodic", NULL unless TOBI_PARAM_CHOICE        */

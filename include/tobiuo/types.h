@@ -342,20 +342,20 @@ typedef struct tobi_inlet_def {
     double radius;              /* m                                                                 */
     double speed;               /* m/s, mean over the patch, or                                      */
     double flow_rate;           /* m3/s (2-D: m2/s), or                                              */
-    const char *file;           /* CSV: time (s) and speed (m/s) or flow_rate (m3/s); NULL = none. It has
-                                   no start, stop and ramp                                           */
+    const char *file;           /* CSV: time (s), speed or flow_rate; no start, stop, ramp; NULL = none */
     int    profile;             /* tobi_profile                                                      */
     double start, stop;         /* s; stop 0 = to the end                                            */
     double ramp;                /* s, in which the speed rises from 0 to its own                     */
 } tobi_inlet_def;
 typedef enum tobi_profile { TOBI_PROFILE_UNIFORM, TOBI_PROFILE_PARABOLIC } tobi_profile;
 
+#define TOBI_NO_LEVEL (-1e9)
 /* Where liquid goes out: what has passed it by a support radius is taken away. */
 typedef struct tobi_outlet_def {
     const char *name;
     double centre[3], normal[3], along[3];     /* as of inlets: normal is the way that the liquid goes */
     double width, height, radius;
-    double level, pressure;     /* m, of the liquid beyond; or Pa, at the centre; 0 = there is none  */
+    double level, pressure;     /* m, of the liquid beyond (TOBI_NO_LEVEL); or Pa, at the centre (-1: none) */
 } tobi_outlet_def;
 
 /* A sensor in the domain. A point reports pressure and velocity of the fluid there, a level how high the

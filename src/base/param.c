@@ -25,12 +25,14 @@ void tobi_param_defaults(const tobi_param_table *table, void *def)
     }
 }
 
+double tobi_param_word(const tobi_param *p) { return p->def[0] < p->min ? p->def[0] : 0; }
+
 static tobi_status check_value(const tobi_param_table *table, const tobi_param *p, double v,
                                tobi_error *err)
 {
     if (!isfinite(v))
         return tobi_fail(err, TOBI_INVALID, "%s.%s is not a finite number", table->name, p->key);
-    if (v == 0 && p->text) return TOBI_OK;      /* the word's value */
+    if (p->text && v == tobi_param_word(p)) return TOBI_OK;
     if (v < p->min || v > p->max)
         return tobi_fail(err, TOBI_INVALID, "%s.%s is %g, allowed is %g to %g %s", table->name, p->key, v,
                          p->min, p->max, p->unit);

@@ -22,6 +22,12 @@ int tobi_opening_faces(const tobi_opening *o, const double at[3])
     return fabs(at[1]) <= o->half[0] + SLACK && fabs(at[2]) <= o->half[1] + SLACK;
 }
 
+double tobi_opening_area(const tobi_opening *o, int dimension)
+{
+    if (o->radius > 0) return acos(-1)*o->radius*o->radius;
+    return dimension == 2 ? 2*o->half[0] : 4*o->half[0]*o->half[1];
+}
+
 int tobi_opening_find(const tobi_opening *o, int count, const double x[3])
 {
     for (int k = 0; k < count; k++) {

@@ -52,6 +52,8 @@ typedef struct tobi_opening {
 void tobi_opening_locate(const tobi_opening *o, const double x[3], double at[3]);
 /* Whether a place with these coordinates lies before or behind the patch, at any distance. */
 int tobi_opening_faces(const tobi_opening *o, const double at[3]);
+/* m2; in 2-D m. */
+double tobi_opening_area(const tobi_opening *o, int dimension);
 /* Number of the opening in whose buffer a place lies, -1 = none. Buffers of outlets have no end. */
 int tobi_opening_find(const tobi_opening *o, int count, const double x[3]);
 /* The integral of the rows of an inlet that has some: the way at any time, also before 0, m. */

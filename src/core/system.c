@@ -1,5 +1,6 @@
 /* What every method does to its particles. */
 #include "core/system.h"
+#include "core/opening.h"
 #include <math.h>
 #include <string.h>
 
@@ -93,9 +94,43 @@ double tobi_system_capillary(const tobi_system *s)
     return most;
 }
 
+/* Largest pressure that an outlet gives over the density, m2/s2: by it liquid comes in. */
+static double opening_head(const tobi_system *s)
+{
+    const double *gravity = s->sim->def.gravity;
+    double most = 0, size = 0, floor = 0;
+    for (int a = 0; a < s->box.dimension; a++) {
+        const double lower = s->box.lower[a];
+        size += gravity[a]*gravity[a];
+        floor += fmax(gravity[a]*lower, gravity[a]*(lower + s->box.size[a]));
+    }
+    for (int k = 0; k < s->sim->opening_count; k++) {
+        const tobi_opening *o = &s->sim->openings[k];
+        if (o->gives == TOBI_GIVES_PRESSURE) most = fmax(most, o->pressure/s->fluid[0].density);
+        if (o->gives == TOBI_GIVES_LEVEL) most = fmax(most, sqrt(size)*o->level + floor);
+    }
+    return most;
+}
+
+/* Of inlets: all of their flow through a place two spacings wide, but at most ten times the fastest inlet. */
+static double narrow_speed(const tobi_system *s)
+{
+    const int dimension = s->box.dimension;
+    const double hole = pow(2*s->smoothing.spacing, dimension - 1);
+    double flow = 0, fastest = 0;
+    for (int k = 0; k < s->sim->opening_count; k++) {
+        const tobi_opening *o = &s->sim->openings[k];
+        if (o->outlet) continue;
+        flow += o->speed*tobi_opening_area(o, dimension);
+        fastest = fmax(fastest, o->speed);
+    }
+    return fmin(flow/hole, 10*fastest);
+}
+
 double tobi_system_speed_scale(const tobi_system *s)
 {
-    double fall = 0;
+    double fall = opening_head(s);
     for (int a = 0; a < s->box.dimension; a++) fall += tobi_simulation_pull(s->sim, a)*s->box.size[a];
-    return sqrt(2*fall + 8*tobi_system_capillary(s)) + s->sim->body_speed + 2*s->start_speed;
+    const double brought = fmax(2*s->start_speed, narrow_speed(s));
+    return sqrt(2*fall + 8*tobi_system_capillary(s)) + s->sim->body_speed + brought;
 }

@@ -155,8 +155,8 @@ void tobi_system_densities(const tobi_system *s, double *least, double *most);
 double tobi_system_density_ratio(const tobi_system *s);
 /* Tension over density and spacing, the most of all fluids, m2/s2. */
 double tobi_system_capillary(const tobi_system *s);
-/* A speed nothing in the scene should exceed by much, m/s: free fall across the box, the bodies and the
-   initial velocities. */
+/* A speed nothing in the scene should exceed by much, m/s: free fall across the box and from the pressure of
+   outlets, the bodies, the initial velocities, and the flow of inlets through a narrow place. */
 double tobi_system_speed_scale(const tobi_system *s);
 /* Room for so many rows, lists and all; nothing else changes, also on failure. */
 tobi_status tobi_system_room(tobi_system *s, int64_t rows, tobi_error *err);

@@ -113,13 +113,12 @@ void tobi_bind_default(const tobi_param *row, char *text, size_t size)
     } else if (row->type == TOBI_PARAM_VEC3 && row->text) snprintf(text, size, "%s", row->text);
     else if (row->type == TOBI_PARAM_VEC3)
         snprintf(text, size, "[%.10g, %.10g, %.10g]", row->def[0], row->def[1], row->def[2]);
-    else if (row->def[0] == 0 && row->text) snprintf(text, size, "%s", row->text);
+    else if (row->text && row->def[0] == tobi_param_word(row)) snprintf(text, size, "%s", row->text);
     else snprintf(text, size, "%.10g", row->def[0]);
 }
 
 static int is_allowed(const tobi_param *row, double v)
 {
-    if (v == 0 && row->text && !row->positive) return 1;      /* the word's value */
     return isfinite(v) && !(row->positive && !(v > 0)) && !(v < row->min) && !(v > row->max);
 }
 
@@ -157,11 +156,11 @@ static int check_range(const slot *s, const tobi_place *place, double v)
     return 0;
 }
 
-/* A number, or the word that stands for 0. */
+/* A number, or the word that stands for one. */
 static int read_number(const slot *s, double *v)
 {
     const char *word = json_string_value(s->value);
-    *v = json_number_value(s->value);
+    *v = json_is_number(s->value) ? json_number_value(s->value) : tobi_param_word(s->row);
     return json_is_number(s->value) || (word && s->row->text && strcmp(word, s->row->text) == 0);
 }
 
@@ -194,7 +193,8 @@ static void bind_vector(const slot *s)
 {
     double v[3];
     memcpy(v, s->member, sizeof v);
-    int scale = s->row->positive, two = s->binder->dimension == 2 && !s->row->text;
+    int scale = s->row->positive;
+    int two = s->binder->dimension == 2 && (!s->row->text || strcmp(s->row->unit, "m") == 0);
     const char *word = json_string_value(s->value);
     if (word && s->row->text && strcmp(word, s->row->text) == 0) {
         memcpy(s->member, s->row->def, sizeof v);

@@ -79,14 +79,6 @@ static json_t *make_words(const char *choices)
     return schema;
 }
 
-/* The word for 0, which may be written too unless it is no value at all. */
-static json_t *make_word(const tobi_param *row)
-{
-    json_t *schema = make_words(row->text);
-    if (!row->positive) json_array_append_new(json_object_get(schema, "enum"), json_integer(0));
-    return schema;
-}
-
 static json_t *make_vector(const tobi_param *row)
 {
     json_t *list = make_type("array");
@@ -142,7 +134,7 @@ static json_t *make_value(const tobi_param *row)
     case TOBI_PARAM_TEXT: return make_text(row);
     case TOBI_PARAM_CHOICE: return make_words(row->choices);
     case TOBI_PARAM_BOOL: return make_type("boolean");
-    default: return row->text ? make_either(make_number(row), make_word(row)) : make_number(row);
+    default: return row->text ? make_either(make_number(row), make_words(row->text)) : make_number(row);
     }
 }
 

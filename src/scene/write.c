@@ -13,10 +13,10 @@ static json_t *write_number(const tobi_param *row, const void *member)
     int whole;
     if (row->type == TOBI_PARAM_REAL) {
         memcpy(&real, member, sizeof real);
-        return real == 0 && row->text ? json_string(row->text) : json_real(real);
+        return row->text && real == tobi_param_word(row) ? json_string(row->text) : json_real(real);
     }
     memcpy(&whole, member, sizeof whole);
-    return whole == 0 && row->text ? json_string(row->text) : json_integer(whole);
+    return row->text && whole == tobi_param_word(row) ? json_string(row->text) : json_integer(whole);
 }
 
 /* "a,b" as ["a", "b"]. */

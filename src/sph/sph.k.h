@@ -373,7 +373,8 @@ TOBI_FN double sph_step_speed2(const sph_view *v, int64_t i, double speed2)
 
 /* x += dt (v + dt shift), held at a small distance from plane walls; a particle pressed further loses
    its normal speed. The shift (accel) corrects positions and never enters the velocity, eq. (12).
-   A particle beyond the speed cap, squeezed where surfaces meet, is slowed to it and counted.
+   A particle beyond the speed cap, squeezed where surfaces meet, is slowed to it and counted. A
+   speed_limit of the user lifts the cap.
    totals: contacts, momentum lost to walls, capped; maxima: speed^2 for the time step, and before the cap. */
 TOBI_FN void sph_advance(const sph_view *v, int64_t i, double *totals)
 {

@@ -80,12 +80,6 @@ static tobi_status set_patch(tobi_opening *o, double width, double height, doubl
         ? TOBI_OK : refuse(o, "width", "needs a height beside its width", err);
 }
 
-static double find_area(const tobi_opening *o, int dimension)
-{
-    if (o->radius > 0) return acos(-1)*o->radius*o->radius;
-    return dimension == 2 ? 2*o->half[0] : 4*o->half[0]*o->half[1];
-}
-
 /* A lattice over the patch; n columns into out, or only their number. */
 static int64_t lay_columns(const tobi_opening *o, double d, tobi_inlet_column *out)
 {
@@ -134,7 +128,7 @@ static tobi_status make_columns(tobi_opening *o, const tobi_smoothing_constants 
     o->scale = 1/mean;
     for (int64_t k = 0; k < o->column_count; k++)
         o->columns[k].factor = tobi_opening_factor(o, o->columns[k].along, o->columns[k].across);
-    o->step = c->volume*(double)o->column_count/find_area(o, c->dimension);
+    o->step = c->volume*(double)o->column_count/tobi_opening_area(o, c->dimension);
     o->depth = (floor(c->h/o->step) + 2)*o->step;
     return TOBI_OK;
 }
@@ -253,7 +247,7 @@ static tobi_status set_speed(tobi_opening *o, const tobi_world *w, const tobi_in
     if (def->file && (def->start > 0 || def->stop > 0 || def->ramp > 0))
         return refuse(o, "file", "has a file, which has times of its own: start, stop and ramp are not for "
                       "it", err);
-    const double area = find_area(o, dimension);
+    const double area = tobi_opening_area(o, dimension);
     if (def->file) TOBI_TRY(tobi_at_key(err, tobi_opening_load_flow(o, def->file, area, err), "file"));
     else o->speed = def->speed > 0 ? def->speed : def->flow_rate/area;
     if (!(o->speed > 0)) return refuse(o, "file", "has a file in which nothing flows", err);
@@ -304,10 +298,10 @@ tobi_status tobi_world_add_outlet(tobi_world *w, const tobi_outlet_def *def, tob
     TOBI_TRY(tobi_param_check(&tobi_outlet_table, def, err));
     const tobi_box *box = &w->system[0].box;
     tobi_opening o = { .outlet = 1, .level = def->level, .pressure = def->pressure };
-    o.gives = def->pressure > 0 ? TOBI_GIVES_PRESSURE
-            : def->level != 0 ? TOBI_GIVES_LEVEL : TOBI_GIVES_NOTHING;
+    const int pressure = def->pressure >= 0, level = def->level > TOBI_NO_LEVEL;
+    o.gives = pressure ? TOBI_GIVES_PRESSURE : level ? TOBI_GIVES_LEVEL : TOBI_GIVES_NOTHING;
     set_name(&o, def->name, def->centre, box);
-    if (def->pressure > 0 && def->level != 0)
+    if (pressure && level)
         return refuse(&o, "pressure", "has a level and a pressure; it may have one", err);
     TOBI_TRY(set_axes(&o, def->normal, def->along, box->dimension, err));
     TOBI_TRY(set_patch(&o, def->width, def->height, def->radius, box->dimension, err));

@@ -65,7 +65,9 @@ static const tobi_param world_rows[] = {
              "SPH methods; mlsmpm has its own." },
     { .key = "speed_limit", REAL, AT(tobi_world_def, speed_limit),
       RANGE(1e-9, TOBI_SPEED_LIMIT), .unit = "m/s",
-      .text = "automatic", .doc = "A particle faster than this stops the run as diverged." },
+      .text = "automatic",
+      .doc = "A particle faster than this stops the run as diverged. Automatic goes by what fall, bodies, "
+             "inlets and pressures of outlets explain, and slows single particles beyond it." },
     { .key = "threads", INT, AT(tobi_world_def, threads), RANGE(0, 4096), .unit = "1",
       .text = "all", .doc = "Processor cores to use, all: as OMP_NUM_THREADS says, or else those of the "
              "machine; the result is the same for any number." },

@@ -48,10 +48,12 @@ static const tobi_param outlet_rows[] = {
     { .key = "name", TEXT, AT(tobi_outlet_def, name), .unit = "name", .text = "outlet", .required = true,
       .doc = "Name of the outlet, for messages." },
     PATCH(tobi_outlet_def),
-    { .key = "level", REAL, AT(tobi_outlet_def, level), PLACE, .unit = "m", .text = "none",
+    { .key = "level", REAL, AT(tobi_outlet_def, level), .def = { TOBI_NO_LEVEL }, PLACE, .unit = "m",
+      .text = "none",
       .doc = "Level of liquid at rest beyond the outlet, whose pressure holds there: a coordinate upwards; "
              "without one there is no pressure. Liquid comes back where it is higher than that inside." },
-    { .key = "pressure", REAL, AT(tobi_outlet_def, pressure), RANGE(0, 1e12), .unit = "Pa", .text = "none",
+    { .key = "pressure", REAL, AT(tobi_outlet_def, pressure), .def = { -1 }, RANGE(0, 1e12), .unit = "Pa",
+      .text = "none",
       .doc = "Instead of a level: pressure at the centre, and that of liquid at rest above and below it. "
              "Liquid comes back where it is higher than that inside." },
     { 0 }

@@ -237,8 +237,9 @@ static const char *name_cfl(const tobi_system *s, double *value)
 static tobi_status check_runaway(const tobi_system *s, tobi_error *err)
 {
     double limit = s->sim->def.speed_limit, cfl;
-    const char *key = name_cfl(s, &cfl);
+    const char *key = name_cfl(s, &cfl), *wanted = "";
     if (limit <= 0) {
+        wanted = ", or a speed_limit, where liquid is meant to be that fast";
         /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
         const int64_t few = 20 + s->particles.count/200;
         if (s->info.speed_max < TOBI_SPEED_LIMIT && s->info.capped <= few) return TOBI_OK;
@@ -259,14 +260,14 @@ static tobi_status check_runaway(const tobi_system *s, tobi_error *err)
         return tobi_fail(err, TOBI_DIVERGED,
                          "the simulation diverged at t = %.9g s, step %lld: particle %lld at (%g, "
                          "%g, %g) m moves at %g m/s, the limit is %g m/s; a %s smaller than %g may "
-                         "help",
+                         "help%s",
                          s->sim->time, (long long)s->sim->step, (long long)s->particles.id[i],
                          x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], speed,
-                         limit, key, cfl);
+                         limit, key, cfl, wanted);
     }
     return tobi_fail(err, TOBI_DIVERGED,
                      "the simulation diverged at t = %.9g s: a speed reached %g m/s; a %s smaller than %g "
-                     "may help", s->sim->time, s->info.speed_max, key, cfl);
+                     "may help%s", s->sim->time, s->info.speed_max, key, cfl, wanted);
 }
 
 static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)

@@ -85,7 +85,7 @@ static void check_row(const tobi_param_table *table, const tobi_param *row)
     int components = row->type == TOBI_PARAM_VEC3 ? 3 : 1;
     for (int i = 0; i < components; i++) {
         assert_true(isfinite(row->def[i]));
-        if (row->def[i] == 0 && row->text) continue;      /* the word's value */
+        if (row->text && row->def[i] == tobi_param_word(row)) continue;
         assert_false(row->def[i] < row->min || row->def[i] > row->max);
         assert_false(row->positive && row->def[i] <= 0);
     }

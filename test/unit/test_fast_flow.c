@@ -1,0 +1,145 @@
+/* Flows that are faster than fall, bodies and inlets alone: narrow places, pressure in a pipe, a limit of the
+   user's own. Levels and pressures of 0, and other zeros of scenes. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include "scene/scene.h"
+#include "world/world.h"
+
+static tobi_status make(const char *text, tobi_world **w, tobi_error *err)
+{
+    tobi_scene *scene;
+    *w = NULL;
+    TOBI_TRY(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, err));
+    tobi_status status = tobi_scene_build(scene, w, err);
+    if (status == TOBI_OK) status = tobi_world_start(*w, err);
+    tobi_scene_free(scene);
+    return status;
+}
+
+static void must(tobi_status status, const tobi_error *err)
+{
+    if (status != TOBI_OK) fail_msg("%s", err->text);
+}
+
+#define CHANNEL "\"dimension\": 2, \"spacing\": 0.02, \"end_time\": 1, \"gravity\": [0, 0]," \
+    "\"domain\": { \"min\": [0, 0], \"max\": [1, 0.2] }, \"fluids\": [ { \"name\": \"water\"," \
+    "\"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 0.2] } } ] } ],"
+
+/* A hole of a fifth of the width: the water there is five times as fast as at the inlet, and not slowed. */
+static void test_narrow(void **state)
+{
+    static const char *const limits[] = { "", "\"speed_limit\": 30," };
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        char text[2000];
+        tobi_error err = { 0 };
+        tobi_step_info info;
+        tobi_world *w;
+        snprintf(text, sizeof text, "{ \"method\": \"isph\", %s %s"
+                 "\"bodies\": [ { \"name\": \"a\", \"box\": { \"min\": [0.4, 0], \"max\": [0.5, 0.08] } },"
+                 "{ \"name\": \"b\", \"box\": { \"min\": [0.4, 0.12], \"max\": [0.5, 0.2] } } ],"
+                 "\"inlets\": [ { \"name\": \"in\", \"centre\": [0.15, 0.1], \"normal\": [1, 0],"
+                 "\"width\": 0.2, \"speed\": 0.5, \"ramp\": 0.2 } ],"
+                 "\"outlets\": [ { \"name\": \"out\", \"centre\": [0.85, 0.1], \"normal\": [1, 0],"
+                 "\"width\": 0.2, \"pressure\": 4000 } ] }", CHANNEL, limits[k]);
+        must(make(text, &w, &err), &err);
+        for (double t = 0.05; t < 0.41; t += 0.05) {
+            must(tobi_world_advance(w, t, &info, &err), &err);
+            assert_int_equal(info.capped, 0);
+        }
+        assert_true(info.speed_max > 2);          /* 2.5 by continuity, and it is still narrower behind */
+        tobi_world_destroy(w);
+    }
+}
+
+/* Nothing but a pressure of 2000 Pa moves the water, at most at sqrt(2 p/rho) = 2 m/s. */
+static void test_pressure(void **state)
+{
+    static const char *const methods[] = { "isph", "wcsph", "dfsph" };
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        char text[2000];
+        tobi_error err = { 0 };
+        tobi_step_info info;
+        tobi_world *w;
+        snprintf(text, sizeof text, "{ \"method\": \"%s\", %s"
+                 "\"outlets\": [ { \"name\": \"a\", \"centre\": [0.2, 0.1], \"normal\": [-1, 0],"
+                 "\"width\": 0.2, \"pressure\": 2000 }, { \"name\": \"b\", \"centre\": [0.8, 0.1],"
+                 "\"normal\": [1, 0], \"width\": 0.2, \"pressure\": 0 } ] }", methods[k], CHANNEL);
+        must(make(text, &w, &err), &err);
+        must(tobi_world_advance(w, 0.2, &info, &err), &err);
+        assert_true(info.speed_max > 0.2 && info.speed_max < 2.2);
+        tobi_world_destroy(w);
+    }
+}
+
+/* 0 is a level as any other: water up to it rests. */
+static void test_level_zero(void **state)
+{
+    const char *text = "{ \"method\": \"isph\", \"dimension\": 2, \"spacing\": 0.02, \"end_time\": 1,"
+        "\"domain\": { \"min\": [0, -0.2], \"max\": [1, 0.1] }, \"fluids\": [ { \"name\": \"water\","
+        "\"fill\": [ { \"box\": { \"min\": [0, -0.2], \"max\": [1, 0] } } ] } ],"
+        "\"outlets\": [ { \"name\": \"out\", \"centre\": [0.85, -0.05], \"normal\": [1, 0],"
+        "\"width\": 0.3, \"level\": 0 } ] }";
+    tobi_error err = { 0 };
+    tobi_step_info info;
+    tobi_world *w;
+    (void)state;
+    must(make(text, &w, &err), &err);
+    must(tobi_world_advance(w, 0.1, &info, &err), &err);       /* what lies beyond the buffer is gone */
+    const double held = info.mass_held;
+    must(tobi_world_advance(w, 1, &info, &err), &err);
+    assert_true(fabs(info.mass_held - held) < 0.03*held);
+    tobi_world_destroy(w);
+}
+
+/* What begins at 0 is not what never begins. */
+static void test_written_zeros(void **state)
+{
+    static const struct { const char *key, *says; } cases[] = {
+        { "\"absent\": { \"from\": 0 }", "absent.from: is 0, allowed is 1e-12 to 1e9 s, or \"never\"" },
+        { "\"motion\": { \"translation\": { \"velocity\": [1, 0, 0], \"stop\": 0 } }",
+          "stop: is 0, allowed is 1e-12 to 1e9 s, or \"never\"" },
+        { "\"opacity\": 0", "opacity: is 0, allowed is 0.01 to 1, or \"automatic\"" } };
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        char text[2000];
+        tobi_error err = { 0 };
+        tobi_world *w;
+        snprintf(text, sizeof text, "{ %s \"bodies\": [ { \"name\": \"a\", \"box\": { \"min\": [0.4, 0.05],"
+                 "\"max\": [0.5, 0.15] }, %s } ] }", CHANNEL, cases[k].key);
+        assert_int_equal(make(text, &w, &err), TOBI_INVALID);
+        if (!strstr(err.text, cases[k].says)) fail_msg("%s", err.text);
+    }
+}
+
+/* A place in a 2-D scene has two components, also where a word may stand for it. */
+static void test_flat_seed(void **state)
+{
+    const char *text = "{ \"dimension\": 2, \"spacing\": 0.02, \"end_time\": 1,"
+        "\"domain\": { \"min\": [-0.1, -0.1], \"max\": [0.5, 0.5] }, \"fluids\": [ { \"name\": \"water\","
+        "\"fill\": [ { \"vessel\": \"cup\", \"level\": 0.2, \"seed\": [0.2, 0.1] } ] } ],"
+        "\"bodies\": [ { \"name\": \"cup\", \"vessel\": true,"
+        "\"box\": { \"min\": [0, 0], \"max\": [0.4, 0.4] } } ] }";
+    tobi_error err = { 0 };
+    tobi_world *w;
+    (void)state;
+    must(make(text, &w, &err), &err);
+    assert_int_equal(tobi_world_info(w)->fluid_particles, 200);
+    tobi_world_destroy(w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_narrow), cmocka_unit_test(test_pressure), cmocka_unit_test(test_level_zero),
+        cmocka_unit_test(test_written_zeros), cmocka_unit_test(test_flat_seed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
