@@ -71,10 +71,9 @@ int isph_list_memory(tobi_system *s, double **values)
 static double choose_soft_dt(const tobi_system *s)
 {
     if (!s->sim->soft.solids) return INFINITY;
-    const double *g = s->sim->def.gravity, d = s->smoothing.spacing,
-                 wave = SOFT_COURANT*d/sqrt(fmax(s->start_head, 1e-24));
-    if (g[0] != 0 || g[1] != 0 || g[2] != 0) return wave;
-    return fmin(wave, STIFF_COURANT*d/fmax(sph_soft_wave_speed(s), 1e-12));
+    const double *g = s->sim->def.gravity, d = s->smoothing.spacing;
+    if (g[0] != 0 || g[1] != 0 || g[2] != 0) return SOFT_COURANT*d/sqrt(fmax(s->start_head, 1e-24));
+    return STIFF_COURANT*d/fmax(sph_soft_wave_speed(s), 1e-12);
 }
 
 /* Particles and a body may go against each other: cfl bounds what both go. A thin tail drew a cavity into the

@@ -90,7 +90,7 @@ static isph_point sum_particles(const body_points *q, int64_t k)
     const isph_view *v = q->v;
     const int deep = v->dimension == 3;
     double x[3] = { 0 }, pull[3] = { 0 };
-    isph_point sum = { 0, 0, 0 };
+    isph_point sum = { 0 };
     seen_particles list;
     list.count = 0;
     for (int a = 0; a < v->dimension; a++) x[a] = body_of(q)->point[k][a];
@@ -136,6 +136,50 @@ static double normal_acceleration(const body_points *q, int64_t k)
     return sum/q->v->dt;
 }
 
+/* What a row of the solids hides of the points of the body that holds it, where it is outside the body. */
+typedef struct hiding { body_points q; double volume; } hiding;
+
+static void hide_points(void *user, tobi_facing_points *l)
+{
+    const hiding *g = user;
+    tobi_facing_weigh(l, &g->q.s->smoothing);
+    for (int i = 0; i < l->count; i++) {                /* whole numbers: the same sum in any order */
+        const uint32_t more = (uint32_t)(2*g->volume*l->weight[i]*TOBI_COVERED);
+        __atomic_fetch_add(&g->q.point[tobi_facing_point(l, i)->number].held, more, __ATOMIC_RELAXED);
+    }
+}
+
+typedef struct held_view { const tobi_system *s; isph_solver *m; } held_view;
+
+static void hide_held(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const held_view *u = view;
+    const tobi_soft *soft = &u->s->sim->soft;
+    const tobi_boundary_links *n = &sph_of(u->s)->links;
+    (void)totals;
+    for (int64_t k = begin; k < end; k++) {
+        const int body = soft->solids->solids[soft->solids->particles.fluid[k]].clamp;
+        const tobi_double3 *at = &soft->position[k];
+        const double x[3] = { at->x, at->y, at->z };
+        if (body < 0 || soft->size[k].volume == 0) continue;
+        hiding g = { { .s = u->s, .point = u->m->point + n->bins[body].item }, soft->size[k].volume };
+        tobi_boundary_take_facing(n, body, x, u->s->smoothing.h, hide_points, &g);
+    }
+}
+
+/* Where a body holds a solid, no water presses on it. Else body and solid together, which are closed, would
+   feel a uniform pressure. */
+static void find_held(isph_solver *m, tobi_system *s)
+{
+    const tobi_soft *soft = &s->sim->soft;
+    const held_view u = { s, m };
+    int any = 0;
+    for (int k = 0; soft->solids && k < soft->solids->solid_count; k++)
+        any |= soft->solids->solids[k].clamp >= 0;
+    for (int64_t k = 0; k < sph_of(s)->links.bins[s->sim->body_count].item; k++) m->point[k].held = 0;
+    if (any) tobi_launch(m->exec, TOBI_HOST(hide_held, 0, 0), &u, 0, soft->count, NULL);
+}
+
 /* totals: the force of what pressure the surface has beyond that of the particles: of water at rest, and of
    that which the surface of a driven body accelerates. Points that no particle sees are left out. */
 static void weigh_points(const void *view, int64_t begin, int64_t end, double *totals)
@@ -144,8 +188,9 @@ static void weigh_points(const void *view, int64_t begin, int64_t end, double *t
     const tobi_body *b = body_of(q);
     for (int64_t k = begin; k < end; k++) {
         isph_point *p = &q->point[k];
-        *p = b->area[k] > 0 && b->wet[k] ? sum_particles(q, k) : (isph_point){ 0, 0, 0 };
-        if (!(p->weight > DRY)) p->weight = INFINITY;
+        const double held = p->held/TOBI_COVERED;
+        *p = b->area[k] > 0 && b->wet[k] ? sum_particles(q, k) : (isph_point){ 0 };
+        p->weight = p->weight > 0 && p->weight + 0.5*held > DRY && held < 1 ? p->weight/(1 - held) : INFINITY;
         const double more = p->hydrostatic + q->v->density*p->distance*normal_acceleration(q, k);
         add_push(b, k, -b->area[k]*more/p->weight, totals);
     }
@@ -219,6 +264,7 @@ tobi_status isph_forces_find_coupling(isph_solver *m, tobi_system *s, tobi_error
     const int bodies = s->sim->body_count;
     if (bodies == 0) return TOBI_OK;
     TOBI_TRY(reserve(m, n, bodies, err));
+    find_held(m, s);
     body_points q = { .s = s, .v = &m->view, .scale = c->volume*c->weight_correction };
     for (q.body = 0; q.body < bodies; q.body++) {
         double t[TOBI_TOTALS] = { 0 };

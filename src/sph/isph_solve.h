@@ -7,7 +7,11 @@
 
 /* A point of a body's surface: sum of the weights of the particles before it (INFINITY: dry), and of those
    times the hydrostatic pressure from particle to point, Pa, and times the distance from the surface, m. */
-typedef struct isph_point { double weight, hydrostatic, distance; } isph_point;
+typedef struct isph_point {
+    double weight, hydrostatic, distance;
+    uint32_t held;                   /* share of the half space before it with a solid that the body holds, in
+                                        units of 1/TOBI_COVERED                                     */
+} isph_point;
 
 /* What a body does with pressure: in the order of its velocities, then turns. */
 typedef struct isph_body {

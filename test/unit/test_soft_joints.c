@@ -147,6 +147,37 @@ static void a_pin_carries_weight_less_buoyancy(void **state)
     }
 }
 
+/* A hub under water holds a fin. No water presses on the hub where the fin is: by isph it feels 1 +- 0.05 of
+   the pressure on the root, by eisph, whose forces scatter, 1 +- 0.1. Where forces are those of pairs both
+   together feel less than 0.05 of it. */
+static void a_held_fin_hides_its_root(void **state)
+{
+    (void)state;
+    const double hub[4] = { 0.2, 0.1, 0.3, 0.25 }, root = 1000*GRAVITY*0.325*0.025;
+    for (int k = 0; k < LONG; k++) {
+        const scene s = { methods[k], GRAVITY, { 0, 0, 0.6, 0.5 }, 0, { 0.2, 0.1625, 0.4, 0.1875 }, 1000, 5e5,
+                          "hub", 1e-3 };
+        tobi_world *world = open_world(&s);
+        double own = 0, both = 0, span = 0;
+        add_body(world, "hub", hub, 0);
+        add_block(world, &s);
+        OK(tobi_world_start(world, &err));
+        while (world->sim.time < 0.2) {
+            OK(tobi_world_step(world, 1, NULL, &err));
+            const tobi_body_load *load = world->sim.bodies[0].load;
+            if (world->sim.time < 0.1) continue;
+            own += load[0].pressure[0]*world->sim.dt/root;
+            both += (load[0].pressure[0] + load[1].pressure[0])*world->sim.dt/root;
+            span += world->sim.dt;
+        }
+        print_message("%s: over the pressure on the root the hub feels %.3f, with the fin %.3f\n", methods[k],
+                      own/span, both/span);
+        if (k < 2) assert_true(fabs(both/span) < 0.05);
+        else assert_float_equal(own/span, 1, k == 3 ? 0.1 : 0.05);
+        tobi_world_destroy(world);
+    }
+}
+
 static double find_height(const tobi_world *world)
 {
     const tobi_particles *p = &tobi_world_solids(world)->particles;
@@ -280,6 +311,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pin_carries_weight_less_buoyancy),
+        cmocka_unit_test(a_held_fin_hides_its_root),
         cmocka_unit_test(a_light_plank_bears_a_heavy_block),
         cmocka_unit_test(momentum_is_kept),
         cmocka_unit_test(a_block_far_away_changes_nothing)

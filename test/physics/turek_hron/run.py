@@ -7,14 +7,18 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_series, read_table, read_vtu
 
 case = Case("turek_hron", "A flag behind a cylinder", """
-Cases CSM1, CFD1 and FSI1 of S. Turek and J. Hron (Proposal for numerical benchmarking of fluid-structure interaction between an
+Cases CSM1, CFD1, FSI1, FSI2 and FSI3 of S. Turek and J. Hron (Proposal for numerical benchmarking of fluid-structure interaction between an
 elastic object and laminar incompressible flow, Lect. Notes Comput. Sci. Eng. 53, 2006). A channel 0.41 m high with a parabolic
 inlet, a cylinder 0.1 m across at (0.2, 0.2) m, a flag 0.35 m long and 20 mm thick behind it, which the cylinder holds. A is the
 middle of its end. Solid: 1000 kg/m3, E = 1.4 MPa, nu = 0.4; neo-hookean here, St. Venant-Kirchhoff there. Liquid: 1000 kg/m3,
 1 Pa s, by isph. CSM1: the flag alone under 2 m/s2: A moves by -7.187 and -66.10 mm. CFD1: rigid flag, mean speed 0.2 m/s, Re 20:
 drag 14.29 N/m, lift 1.119 N/m on cylinder and flag. FSI1: soft flag, the same flow: drag 14.295, lift 0.7638, A moves by 0.0227
 and 0.8209 mm; all is steady. The channel is cut off at 1.5 m, of 2.5 m. The inlet starts within 0.5 s. Drag and lift are those on
-the cylinder, in bodies.csv: of the liquid, and of the flag that it holds. Means over the last half of the run, of CFD1 too.""")
+the cylinder, in bodies.csv: of the liquid, and of the flag that it holds. Means over the last half of the run, of CFD1 too. FSI2:
+mean speed 1 m/s, flag of 10000 kg/m3: A goes -14.58 +- 12.44 mm along x and 1.23 +- 80.6 mm along y, 2.0 times a second; drag
+208.8 N/m. FSI3: 2 m/s, 1000 kg/m3, E = 5.6 MPa: -2.69 +- 2.53 and 1.48 +- 34.38 mm, 5.3 times a second; drag 457.3 N/m. Both are
+cut off at 1.8 m and start within 1 s; the outlet has a pressure, else the suction behind the cylinder would open cavities. Middle
+and amplitude are half the sum and half the difference of the extremes over the last whole swings; drag is the mean over them.""")
 
 SPACING = 0.0025      # of the flag, 4 cells thick
 HEIGHT, LENGTH, SPEED = 0.41, case.pick(0.9, 1.5), 0.2
@@ -47,17 +51,17 @@ def follow_end(out, spacing, first):
     return [time for time, _ in series[first:]], ways
 
 
-def flow(label, spacing, end, bodies, **more):
-    """Runs the channel; times, drag and lift on all bodies, N/m, from the first output on."""
+def flow(label, spacing, end, bodies, length=LENGTH, inlet=(SPEED, 0.5), outlet=None, **more):
+    """Runs the channel, by an inlet of that mean speed and ramp; times, drag and lift on all bodies, N/m, from the first output on."""
     out = case.run(label, scene=case.write_scene(label, {
         "method": "isph", "dimension": 2, "gravity": [0, 0], "spacing": spacing, "end_time": end,
-        "domain": {"min": [-0.1, 0], "max": [LENGTH + 0.1, HEIGHT], "walls": {"y": "no-slip"}},
+        "domain": {"min": [-0.1, 0], "max": [length + 0.1, HEIGHT], "walls": {"y": "no-slip"}},
         "fluids": [{"name": "liquid", "density": 1000, "viscosity": 1.0,
-                    "fill": [{"box": {"min": [-0.1, 0], "max": [LENGTH + 0.1, HEIGHT]}}]}],
+                    "fill": [{"box": {"min": [-0.1, 0], "max": [length + 0.1, HEIGHT]}}]}],
         "bodies": bodies,
-        "inlets": [{"name": "in", "centre": [0, HEIGHT/2], "normal": [1, 0], "width": HEIGHT, "speed": SPEED,
-                    "profile": "parabolic", "ramp": 0.5}],
-        "outlets": [{"name": "out", "centre": [LENGTH, HEIGHT/2], "normal": [1, 0], "width": HEIGHT}],
+        "inlets": [{"name": "in", "centre": [0, HEIGHT/2], "normal": [1, 0], "width": HEIGHT, "speed": inlet[0],
+                    "profile": "parabolic", "ramp": inlet[1]}],
+        "outlets": [{"name": "out", "centre": [length, HEIGHT/2], "normal": [1, 0], "width": HEIGHT, **(outlet or {})}],
         "output": {"interval": 0.05, "surfaces": False, "fields": ["velocity", "material", "particle_id"]}, **more}))
     table, sums = read_table(out/"bodies.csv"), {}
     for k, time in enumerate(table["time"]):
@@ -114,7 +118,40 @@ for spacing, end in case.pick([(0.01, 0.15)], [(0.01, 6), (0.008, 5)]):
     drags.append((text, times, drag, False))
     lifts.append((f"{text}: lift, N/m", times, lift, False))
     lifts.append((f"{text}: way of A along y, mm", at, [w[1] for w in ways], False))
+
+def swings(times, values, first):
+    """Middle, amplitude and frequency over the last whole swings from the time `first` on: half the sum and difference of extremes."""
+    kept = [(t, v) for t, v in zip(times, values) if t >= first]
+    low, high = min(v for _, v in kept), max(v for _, v in kept)
+    middle = (low + high)/2
+    up = [b[0] - (b[0] - a[0])*(b[1] - middle)/(b[1] - a[1]) for a, b in zip(kept, kept[1:]) if a[1] < middle <= b[1]]
+    return middle, (high - low)/2, (len(up) - 1)/(up[-1] - up[0]) if len(up) > 1 else 0.0, up
+
+
+FLAPPING = {"FSI2": (1.0, 10000, 1.4e6, 3000, 12, 7, {"x": (-14.58, 12.44), "y": (1.23, 80.6)}, 2.0, 208.83),
+            "FSI3": (2.0, 1000, 5.6e6, 12000, 6, 4, {"x": (-2.69, 2.53), "y": (1.48, 34.38)}, 5.3, 457.3)}
+flapping = []
+for name, spacing in case.pick([], [("FSI2", 0.01), ("FSI2", 0.007), ("FSI3", 0.01)]):
+    speed, density, modulus, pressure, end, settled, published, per_second, mean_drag = FLAPPING[name]
+    text = f"{name}, spacing {1e3*spacing:g} mm"
+    out, times, drag, lift = flow(f"{name.lower()}_{1e3*spacing:g}", spacing, end, [WET], length=1.8, inlet=(speed, 1.0),
+                                  outlet={"pressure": pressure}, mlsmpm={"spacing": SPACING},
+                                  solids=[{**SOFT, "density": density, "youngs_modulus": modulus}],
+                                  output={"interval": 0.02, "surfaces": False, "fields": ["velocity", "material", "particle_id"]})
+    at, ways = follow_end(out, SPACING, 1)
+    for a, axis in enumerate("xy"):
+        middle, amplitude, frequency, up = swings(at, [w[a] for w in ways], settled)
+        right = published[axis]
+        judge(f"{text}: amplitude of A along {axis}, mm,", amplitude, right[1], 0.1)
+        case.state(f"{text}: middle of A along {axis}, mm, {right[0]:g} published", middle)
+    judge(f"{text}: swings in a second", frequency, per_second, 0.05)
+    judge(f"{text}: mean drag, N/m,", mean([d for t, d in zip(times, drag) if up[0] < t <= up[-1]]), mean_drag, 0.1)
+    held = read_table(out/"history.csv")["mass_held"][1:]
+    case.figure(f"{text}: liquid lost from the first output on", 1 - held[-1]/held[0], "<= 0.01", held[-1] >= 0.99*held[0])
+    flapping.append((text, at, [w[1] for w in ways], False))
 case.plot("Drag, N/m", "t, s", "N/m", drags)
+if flapping:
+    case.plot("Way of A along y, flags that flap", "t, s", "mm", flapping)
 if lifts:
     case.plot("Lift, and where the flag goes", "t, s", "N/m, mm", lifts)
 case.finish()
