@@ -18,6 +18,7 @@ typedef struct body_points {
     const isph_view *v;
     int body;
     isph_point *point;               /* of the body                                                 */
+    int holds;                       /* 1: a body holds a solid, and points know their share `held` */
     double scale;                    /* m3, on W                                                    */
 } body_points;
 
@@ -167,17 +168,27 @@ static void hide_held(const void *view, int64_t begin, int64_t end, double *tota
     }
 }
 
+static void clear_held(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const held_view *u = view;
+    (void)totals;
+    for (int64_t k = begin; k < end; k++) u->m->point[k].held = 0;
+}
+
 /* Where a body holds a solid, no water presses on it. Else body and solid together, which are closed, would
-   feel a uniform pressure. */
-static void find_held(isph_solver *m, tobi_system *s)
+   feel a uniform pressure. Returns 1 where any does. */
+static int find_held(isph_solver *m, tobi_system *s)
 {
     const tobi_soft *soft = &s->sim->soft;
     const held_view u = { s, m };
     int any = 0;
     for (int k = 0; soft->solids && k < soft->solids->solid_count; k++)
         any |= soft->solids->solids[k].clamp >= 0;
-    for (int64_t k = 0; k < sph_of(s)->links.bins[s->sim->body_count].item; k++) m->point[k].held = 0;
-    if (any) tobi_launch(m->exec, TOBI_HOST(hide_held, 0, 0), &u, 0, soft->count, NULL);
+    if (!any) return 0;
+    const int64_t points = sph_of(s)->links.bins[s->sim->body_count].item;
+    tobi_launch(m->exec, TOBI_HOST(clear_held, 0, 0), &u, 0, points, NULL);
+    tobi_launch(m->exec, TOBI_HOST(hide_held, 0, 0), &u, 0, soft->count, NULL);
+    return 1;
 }
 
 /* totals: the force of what pressure the surface has beyond that of the particles: of water at rest, and of
@@ -188,7 +199,7 @@ static void weigh_points(const void *view, int64_t begin, int64_t end, double *t
     const tobi_body *b = body_of(q);
     for (int64_t k = begin; k < end; k++) {
         isph_point *p = &q->point[k];
-        const double held = p->held/TOBI_COVERED;
+        const double held = q->holds ? p->held/TOBI_COVERED : 0;
         *p = b->area[k] > 0 && b->wet[k] ? sum_particles(q, k) : (isph_point){ 0 };
         p->weight = p->weight > 0 && p->weight + 0.5*held > DRY && held < 1 ? p->weight/(1 - held) : INFINITY;
         const double more = p->hydrostatic + q->v->density*p->distance*normal_acceleration(q, k);
@@ -264,8 +275,8 @@ tobi_status isph_forces_find_coupling(isph_solver *m, tobi_system *s, tobi_error
     const int bodies = s->sim->body_count;
     if (bodies == 0) return TOBI_OK;
     TOBI_TRY(reserve(m, n, bodies, err));
-    find_held(m, s);
-    body_points q = { .s = s, .v = &m->view, .scale = c->volume*c->weight_correction };
+    body_points q = { .s = s, .v = &m->view, .holds = find_held(m, s),
+                      .scale = c->volume*c->weight_correction };
     for (q.body = 0; q.body < bodies; q.body++) {
         double t[TOBI_TOTALS] = { 0 };
         q.point = m->point + n->bins[q.body].item;
