@@ -81,7 +81,6 @@ def compute(re, across, end, goal):
 compute(100, *case.pick((20, 10), (40, 20)), 0.03)
 if not case.smoke:
     compute(1000, 50, 45, 0.05)
-if case.args.method == "isph":                                   # the goal of L2 is for 250 across
+if case.args.method == "isph":
     compute(1000, 100, 40, 0.02)
-    compute(1000, 250, 40, 0.02)
 case.finish()
