@@ -82,8 +82,9 @@ static void test_pressure(void **state)
 /* 0 is a level as any other: water up to it rests. */
 static void test_level_zero(void **state)
 {
-    const char *text = "{ \"method\": \"isph\", \"dimension\": 2, \"threads\": 1, \"spacing\": 0.02, \"end_time\": 1,"
-        "\"domain\": { \"min\": [0, -0.2], \"max\": [1, 0.1] }, \"fluids\": [ { \"name\": \"water\","
+    const char *text = "{ \"method\": \"isph\", \"dimension\": 2, \"threads\": 1, \"spacing\": 0.02,"
+        "\"end_time\": 1, \"domain\": { \"min\": [0, -0.2], \"max\": [1, 0.1] },"
+        "\"fluids\": [ { \"name\": \"water\","
         "\"fill\": [ { \"box\": { \"min\": [0, -0.2], \"max\": [1, 0] } } ] } ],"
         "\"outlets\": [ { \"name\": \"out\", \"centre\": [0.85, -0.05], \"normal\": [1, 0],"
         "\"width\": 0.3, \"level\": 0 } ] }";
