@@ -202,8 +202,9 @@ static void add_pair(int64_t i, const image *m, sums *s)
 static int may_reach(int64_t i, int64_t j)
 {
     for (int a = 0; a < view.dimension; a++) {
-        const double x = (&pool.p.position[i].x)[a], y = (&pool.p.position[j].x)[a], upper = 2*pool.box.size[a];
-        if (fmin(fmin(fabs(x - y), fabs(x + y)), fabs(x + y - upper)) > view.h) return 0;
+        const double x = (&pool.p.position[i].x)[a], y = (&pool.p.position[j].x)[a];
+        const double below = fabs(x + y), above = fabs(x + y - 2*pool.box.size[a]);
+        if (fmin(fabs(x - y), fmin(below, above)) > view.h) return 0;
     }
     return 1;
 }
