@@ -58,6 +58,32 @@ static void test_narrow(void **state)
     }
 }
 
+/* A full pipe is told what its method makes of it, unless it keeps the pipe full. */
+static void test_full_pipes(void **state)
+{
+    static const struct { const char *method, *outlet, *note; } cases[] = {
+        { "isph", "", "full pipe gets cavities" }, { "isph", ", \"pressure\": 500", NULL },
+        { "dfsph", ", \"pressure\": 500", "dfsph crowds or loses liquid" } };
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        char text[2000];
+        tobi_error err = { 0 };
+        tobi_world *w;
+        int told = 0;
+        snprintf(text, sizeof text, "{ \"method\": \"%s\", %s"
+                 "\"inlets\": [ { \"name\": \"in\", \"centre\": [0.15, 0.1], \"normal\": [1, 0],"
+                 "\"width\": 0.2, \"speed\": 0.5 } ],"
+                 "\"outlets\": [ { \"name\": \"out\", \"centre\": [0.85, 0.1], \"normal\": [1, 0],"
+                 "\"width\": 0.2%s } ] }", cases[k].method, CHANNEL, cases[k].outlet);
+        must(make(text, &w, &err), &err);
+        for (int n = 0; tobi_world_note(w, n); n++)
+            told |= cases[k].note ? strstr(tobi_world_note(w, n), cases[k].note) != NULL
+                                  : strstr(tobi_world_note(w, n), "full pipe") != NULL;
+        assert_int_equal(told, cases[k].note != NULL);
+        tobi_world_destroy(w);
+    }
+}
+
 /* Nothing but a pressure of 2000 Pa moves the water, at most at sqrt(2 p/rho) = 2 m/s. */
 static void test_pressure(void **state)
 {
@@ -139,7 +165,8 @@ static void test_flat_seed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_narrow), cmocka_unit_test(test_pressure), cmocka_unit_test(test_level_zero),
+        cmocka_unit_test(test_narrow), cmocka_unit_test(test_full_pipes), cmocka_unit_test(test_pressure),
+        cmocka_unit_test(test_level_zero),
         cmocka_unit_test(test_written_zeros), cmocka_unit_test(test_flat_seed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
