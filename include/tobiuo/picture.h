@@ -62,6 +62,8 @@ typedef struct tobi_picture_path {
 
 /* How particles look: water and solids; surfaces in the colours of values, opaque; balls in those colours. */
 enum { TOBI_LOOK_NATURAL, TOBI_LOOK_SURFACE, TOBI_LOOK_PARTICLES };
+/* Which particles show the field of a view; the others have their own colours. */
+enum { TOBI_FIELD_OF_ALL, TOBI_FIELD_OF_LIQUIDS, TOBI_FIELD_OF_SOLIDS };
 
 /* Everything borrowed for the call. Obtain from tobi_default_picture and change members. */
 typedef struct tobi_picture {
@@ -78,6 +80,8 @@ typedef struct tobi_picture {
     int64_t particle_count;
     const double (*positions)[3];      /* m; not finite = not drawn                                     */
     const float *values;               /* colour of each particle, e.g. speed; NULL = that of water     */
+    const float (*own)[3];             /* sRGB, colours instead of those of values; red below 0: no colour;
+                                          of a group all have one or none; NULL = none; with values only */
     const uint8_t *opaque;             /* not 0: the particle belongs to a solid; NULL = all are water  */
     const int32_t *group;              /* one surface around each group; NULL = all are one            */
     const tobi_picture_skin *skins;    /* with rest, in the look NATURAL: instead of colours            */

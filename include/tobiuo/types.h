@@ -433,7 +433,7 @@ typedef struct tobi_view_def {
     double      position[3];          /* m, of the camera, if there is an angle                       */
     double      look_at[3];           /* m, what it looks at                                          */
     double      angle;                /* degrees, vertical field of view; 0 = a view that fits        */
-    int         look;                 /* TOBI_LOOK_* of tobiuo/picture.h                              */
+    int         look, field_of;       /* TOBI_LOOK_*, TOBI_FIELD_OF_* of tobiuo/picture.h             */
     int         map;                  /* of colours, see tobi_color_map_name                          */
     const char *field;                /* that gives the colours; NULL = none                          */
     double      min, max;             /* values at the ends of the colours; equal = of each picture   */

@@ -5,6 +5,7 @@
 #include "scene/parts.h"
 #include "scene/write.h"
 #include "base/param.h"
+#include "tobiuo/picture.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,17 +92,31 @@ static void check_names(const tobi_scene *scene, tobi_source *source, const tobi
     free(copy);
 }
 
+/* Whether anything could show the field. */
+static void check_field_of(const tobi_scene *scene, tobi_source *source, const tobi_place *place,
+                           int field_of)
+{
+    const int liquids = field_of == TOBI_FIELD_OF_LIQUIDS;
+    int count = liquids ? scene->fluid_count : 0;
+    for (int k = 0; k < scene->solid_count; k++)
+        count += (scene->solids[k].def.model == TOBI_LIQUID) == liquids;
+    if (field_of != TOBI_FIELD_OF_ALL && count == 0)
+        tobi_source_mistake(source, place, "is \"%s\", but the scene has none",
+                            liquids ? "liquids" : "solids");
+}
+
 /* place: of the object that has camera and picture. */
 static void check_view(const tobi_scene *scene, tobi_source *source, const tobi_view_def *view,
                        const tobi_place *place)
 {
     tobi_place picture = { place, "picture", 0 }, follow = { &picture, "follow", 0 };
-    tobi_place field = { &picture, "field", 0 };
+    tobi_place field = { &picture, "field", 0 }, field_of = { &picture, "field_of", 0 };
     tobi_place camera = { place, "camera", 0 }, target = { &camera, "look_at", 0 };
     if (view->angle > 0 && scene->world.dimension == 3 &&
         memcmp(view->position, view->look_at, sizeof view->look_at) == 0)
         tobi_source_mistake(source, &target, "is the camera's own position");
     if (view->field) check_names(scene, source, &field, view->field);
+    check_field_of(scene, source, &field_of, view->field_of);
     if (view->follow && !tobi_scene_find_body(scene, view->follow))
         tobi_source_mistake(source, &follow, "\"%s\" is no body of the scene", view->follow);
 }

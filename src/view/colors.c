@@ -23,7 +23,7 @@ void view_find_range(const tobi_picture *f, double *low, double *high)
     if (*low < *high && isfinite(*low) && isfinite(*high)) return;
     *low = *high = 0;
     for (int64_t i = 0; f->values && i < f->particle_count; i++) {
-        if (!isfinite(f->values[i])) continue;
+        if (!isfinite(f->values[i]) || view_has_own(f, i)) continue;
         *low = fmin(*low, f->values[i]);
         *high = fmax(*high, f->values[i]);
     }
@@ -47,7 +47,8 @@ static void color_range(const void *view, int64_t begin, int64_t end)
         const float value = t == t ? clampf((float)t, 0, 1) : 1;
         const float exact = value*(float)(c->f->palette_count - 1);
         const bool number = c->f->palette && exact == (float)(int)exact;      /* of a colour */
-        c->out[i] = number ? c->palette[(int)exact] : c->step[(int)(value*STEPS + 0.5f)];
+        c->out[i] = view_has_own(c->f, i) ? linear_color(c->f->own[i]) : number ? c->palette[(int)exact]
+            : c->step[(int)(value*STEPS + 0.5f)];
     }
 }
 
@@ -78,7 +79,8 @@ vec *view_scale_particles(const tobi_picture *f, double low, double high)
     vec *out = malloc(((size_t)f->particle_count + 1)*sizeof *out);
     for (int64_t i = 0; out && i < f->particle_count; i++) {
         const double t = (f->values[i] - low)/(high - low);
-        out[i] = (vec){ t == t ? clampf((float)t, -1e6f, 1e6f) : 1, 0, 0 };
+        out[i] = view_has_own(f, i) ? linear_color(f->own[i])
+            : (vec){ t == t ? clampf((float)t, -1e6f, 1e6f) : 1, 0, 0 };
     }
     return out;
 }

@@ -298,7 +298,7 @@ static inline float view_lit_at(const shadow *s, float x, float y, float depth)
 vec  view_color_of(const tobi_picture *f, float value);
 void view_find_range(const tobi_picture *f, double *low, double *high);
 vec *view_color_particles(const tobi_picture *f, double low, double high);
-/* Values as x of colours, from 0 at low to 1 at high; and the colours of such values. */
+/* Values as x of colours, from 0 at low to 1 at high, or own colours; and the colours of such values. */
 vec *view_scale_particles(const tobi_picture *f, double low, double high);
 enum { SCALE_STEPS = 1024 };
 void view_make_scale(const tobi_picture *f, vec scale[SCALE_STEPS + 1]);
@@ -321,6 +321,9 @@ void view_draw_color_bar(canvas *c, const tobi_picture *f, double value_min, dou
 /* axes.c; false: no memory. */
 void view_draw_axes(canvas *c, const tobi_picture *f);
 bool view_draw_arrows(canvas *c, const tobi_picture *f);
+
+/* The particle has a colour of its own, whatever its value. */
+static inline bool view_has_own(const tobi_picture *f, int64_t i) { return f->own && f->own[i][0] >= 0; }
 
 /* On this side of the clip plane, or in the slice. */
 static inline bool view_is_shown(const tobi_picture *f, int64_t i)

@@ -14,6 +14,7 @@ void tobi_drawing_free(tobi_drawing *d)
     free(d->positions);
     free(d->velocities);
     free(d->values);
+    free(d->own);
     free(d->palette);
     free(d->tint);
     free(d->opaque);
@@ -157,15 +158,25 @@ static tobi_status make_arrays(tobi_drawing *d, int arrows, tobi_error *err)
 {
     const size_t n = (size_t)d->moment->count + 1;
     const int differ = tobi_looks_differ(d->looks);
+    const int own = d->view->field_of && d->looks->material_count > 0;
     d->positions = malloc(n*sizeof *d->positions);
     d->values = malloc(n*sizeof *d->values);
     d->opaque = malloc(n);
     d->group = malloc(n*sizeof *d->group);
     if (arrows) d->velocities = malloc(n*sizeof *d->velocities);
     if (differ) d->radii = malloc(n*sizeof *d->radii);
+    if (own) d->own = malloc(n*sizeof *d->own);
     const int enough = d->positions && d->values && d->opaque && d->group && (!arrows || d->velocities) &&
-                       (!differ || d->radii);
+                       (!differ || d->radii) && (!own || d->own);
     return enough ? TOBI_OK : no_memory(err);
+}
+
+/* Of particles that do not show the field; of the others a red below 0. */
+static void take_own_color(tobi_drawing *d, int64_t to, int color)
+{
+    static const float none[3] = { -1, -1, -1 };
+    const int shows = d->opaque[to] == (d->view->field_of == TOBI_FIELD_OF_SOLIDS);
+    memcpy(d->own[to], shows ? none : d->palette[color], sizeof none);
 }
 
 /* A value for each particle that is shown, its place and velocity. */
@@ -191,8 +202,9 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
         if (d->radii) d->radii[to] = tobi_looks_radius(d->looks, material);
         if (d->skin) take_skin(d, i, to, material);
         d->group[to] = look->liquid ? -look->kind : piece >= 0 ? 1 + piece : -material;
-        d->values[to] = !d->has_palette ? field ? value_at(field, i) : 0
-            : (float)tobi_drawing_color(d, material, number_at(d->part, i, 0), piece);
+        const int color = tobi_drawing_color(d, material, number_at(d->part, i, 0), piece);
+        d->values[to] = d->has_palette ? (float)color : field ? value_at(field, i) : 0;
+        if (d->own) take_own_color(d, to, color);
     }
     return TOBI_OK;
 }
@@ -257,7 +269,7 @@ static void set_range(tobi_drawing *d)
     if (!(low < high)) {
         low = INFINITY, high = -INFINITY;
         for (int64_t i = 0; i < d->count; i++) {
-            if (!isfinite(d->values[i])) continue;
+            if (!isfinite(d->values[i]) || (d->own && d->own[i][0] >= 0)) continue;
             low = fmin(low, d->values[i]);
             high = fmax(high, d->values[i]);
         }
@@ -321,6 +333,7 @@ static void set_view(tobi_drawing *d)
     if (!d->view->field && p->look == TOBI_LOOK_NATURAL) return;
     p->palette = tobi_color_map(tobi_color_map_name(d->view->map), &p->palette_count);
     p->values = d->values;
+    p->own = (const float (*)[3])d->own;
     if (p->look == TOBI_LOOK_NATURAL) p->look = TOBI_LOOK_SURFACE;
     set_range(d);
 }

@@ -12,6 +12,7 @@ struct tobi_drawing {
     int64_t count;                     /* particles that are shown                      */
     double (*positions)[3], (*velocities)[3];
     float *values;                     /* of the field; with a palette its colour's number */
+    float (*own)[3];                   /* colours, see field_of; red below 0: by value; or NULL */
     uint8_t *opaque;
     int32_t *group;                    /* kind, material or piece                       */
     double *radii;                     /* m; NULL: all particles have one               */

@@ -170,5 +170,5 @@ tobi_status tobi_drawing_make_palette(tobi_drawing *d, const tobi_moment_field *
             find_color(s, m, c%PARTS, c/PARTS, d->palette[m*PARTS*TINTS + c]);
     }
     d->has_palette = (colored || kinds + any_solid > 1) && !d->view->field && !d->view->look;
-    return d->has_palette && d->piece ? choose_tints(d, id, err) : TOBI_OK;
+    return (d->has_palette || d->view->field_of) && d->piece ? choose_tints(d, id, err) : TOBI_OK;
 }

@@ -120,7 +120,7 @@ typedef struct scene {
     const tobi_picture *f;
     canvas c;
     geometry solids, water, drops, glass;
-    vec *color;                  /* of particles; NULL: water in its own colour */
+    vec *color;                  /* of particles, or their scaled values; NULL: water's */
     vec scale[SCALE_STEPS + 1];  /* of values, for surfaces in their colours    */
     segments isolines, outline;
     int32_t *row;                /* of particles                                */
@@ -275,6 +275,7 @@ static surface_request take_group(const surface_request *all, int64_t *begin)
     r.row += *begin, r.count = end - *begin;
     r.radius = radius_of(f, r.row[0]);
     r.drop *= (float)r.radius;
+    if (view_has_own(f, r.row[0])) r.scale = NULL;
     *begin = end;
     return r;
 }
@@ -417,6 +418,7 @@ static tobi_status add_isolines(scene *s, tobi_error *err)
     if (f->group && !sort_by_group(f, &all, s->row)) return no_memory(f, err);
     for (int64_t begin = 0; begin < all.count;) {
         const surface_request r = take_group(&all, &begin);
+        if (view_has_own(f, r.row[0])) continue;
         if (!view_find_isolines(&s->c, &r, s->low, s->high, &s->isolines)) return no_memory(f, err);
     }
     return TOBI_OK;

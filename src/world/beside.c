@@ -1,6 +1,6 @@
-/* Solids beside a liquid with periodic sides: the liquid goes through these, solids do not, so that a flap in
-   a channel is possible and a leaf that drifts through is not (decision 79). Drawback: it is told when it
-   happens, in the middle of a run. */
+/* Bodies, and solids beside a liquid, with periodic sides: the liquid goes through these, bodies and solids
+   do not, so that a flap in a channel is possible and a leaf that drifts through is not (decision 79).
+   Drawback: it is told when it happens, in the middle of a run. */
 #include "world/beside.h"
 #include "base/error.h"
 
@@ -21,13 +21,39 @@ static void count_near(const void *view, int64_t begin, int64_t end, double *tot
     for (int64_t i = begin; i < end; i++) totals[0] += near_side(view, i) >= 0;
 }
 
+/* Liquid beyond a side does not see what sticks out there: a raft that drifts through would sink. One that
+   reaches from side to side is a wall, and may stick out. */
+static tobi_status check_bodies(const tobi_world *w, tobi_error *err)
+{
+    const tobi_box *box = &w->system[0].box;
+    const double spacing = w->system[0].smoothing.spacing, slack = 1e-6*spacing;
+    for (int k = 0; k < w->sim.body_count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        double low[3], high[3];
+        if (b->is_absent) continue;
+        tobi_bvh_box(b->bvh, low, high);
+        for (int a = 0; a < box->dimension; a++) {
+            const double size = box->size[a], lower = box->lower[a];
+            if (!box->periodic[a] || (low[a] >= -slack && high[a] <= size + slack)) continue;
+            if (low[a] < spacing && high[a] > size - spacing) continue;
+            return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s' reaches from %c = %.6g to %.6g m; bodies do "
+                             "not go through periodic sides, here at %g and %g m, unless they reach from "
+                             "side to side",
+                             b->name, "xyz"[a], low[a] + lower, high[a] + lower, lower, lower + size);
+        }
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_beside_check(tobi_world *w, tobi_error *err)
 {
     const tobi_system *liquid = &w->system[0], *s = w->sim.soft.solids;
     const int *periodic = liquid->box.periodic;
     const sides v = { s, liquid->smoothing.h, periodic };
     double t[TOBI_TOTALS] = { 0 };
-    if (!s || !(periodic[0] || periodic[1] || periodic[2])) return TOBI_OK;
+    if (!(periodic[0] || periodic[1] || periodic[2])) return TOBI_OK;
+    TOBI_TRY(check_bodies(w, err));
+    if (!s) return TOBI_OK;
     tobi_launch(&w->sim.exec, TOBI_HOST(count_near, 1, 0), &v, 0, s->particles.count, t);
     for (int64_t i = 0; t[0] > 0 && i < s->particles.count; i++) {
         const int a = near_side(&v, i);

@@ -1,7 +1,7 @@
-/* What solids beside a liquid may not do while a world runs. */
+/* What bodies, and solids beside a liquid, may not do while a world runs. */
 #pragma once
 #include "world/world.h"
 
-/* TOBI_UNSUPPORTED when a solid comes so near to a periodic side that the liquid beyond it would feel the
-   solid, or the solid would leave. Costs nothing without periodic sides. */
+/* TOBI_UNSUPPORTED when a body goes through one periodic side, or a solid comes so near to one that the
+   liquid beyond it would feel the solid, or the solid would leave. Costs nothing without periodic sides. */
 tobi_status tobi_beside_check(tobi_world *w, tobi_error *err);

@@ -541,15 +541,29 @@ void tobi_openings_set(tobi_world *w, const double way[TOBI_OPENING_LIMIT])
 /* Share of the domain from which liquid leaves no room for a free surface, but in the buffers. */
 static const double FULL = 0.8;
 
+/* The name of an outlet without a pressure, or NULL. */
+static const char *find_free_outlet(const tobi_simulation *s)
+{
+    for (int k = 0; k < s->opening_count; k++)
+        if (s->openings[k].outlet && s->openings[k].gives == TOBI_GIVES_NOTHING) return s->openings[k].name;
+    return NULL;
+}
+
 tobi_status tobi_openings_note(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = &w->system[0];
+    const char *outlet = find_free_outlet(&w->sim);
     double room = 1;
-    char text[200];
-    if (w->sim.opening_count == 0 || s->method->fills_pipes) return TOBI_OK;
+    char text[300];
+    if (w->sim.opening_count == 0 || (s->method->fills_pipes && !outlet)) return TOBI_OK;
     for (int a = 0; a < s->box.dimension; a++) room *= s->box.size[a];
     if ((double)s->particles.count*s->smoothing.volume < FULL*room) return TOBI_OK;
-    snprintf(text, sizeof text, "%s crowds or loses liquid where inlets and outlets leave no free surface, "
-             "as in a full pipe; isph keeps it\n", s->method->name);
+    if (s->method->fills_pipes)
+        snprintf(text, sizeof text, "where the pressure falls below 0 a full pipe gets cavities (mass_held "
+                 "in history.csv falls); a pressure of the outlet '%s', density x speed^2 of the fastest "
+                 "place, keeps it full\n", outlet);
+    else
+        snprintf(text, sizeof text, "%s crowds or loses liquid where inlets and outlets leave no free "
+                 "surface, as in a full pipe; isph keeps it\n", s->method->name);
     return tobi_world_add_notes(w, "world", "method", text, err);
 }

@@ -29,7 +29,8 @@ static const tobi_param world_rows[] = {
     { .key = "domain.max", VEC3, AT(tobi_world_def, domain_max), PLACE, .unit = "m",
       .required = true, .doc = "Upper corner of the box." },
     WALL("domain.walls.x[0]", wall_min, 0, "Side at the lower x; open lets the particles of mlsmpm out."),
-    WALL("domain.walls.x[1]", wall_max, 0, "Side at the upper x; periodic comes in pairs."),
+    WALL("domain.walls.x[1]", wall_max, 0, "Side at the upper x; periodic comes in pairs. Liquid goes "
+         "through, bodies and solids do not."),
     WALL("domain.walls.y[0]", wall_min, 1, "Side at the lower y."),
     WALL("domain.walls.y[1]", wall_max, 1, "Side at the upper y."),
     WALL("domain.walls.z[0]", wall_min, 2, "Side at the lower z."),

@@ -55,6 +55,9 @@ const tobi_param_table tobi_probe_table = {
     { .key = "picture.field", TEXT, AT(type, in field), .unit = "name", \
       .doc = "The field that colours the pictures, as in fields; of a vector its length. 2-D scenes " \
              "without it show the speed." }, \
+    { .key = "picture.field_of", CHOICE("all|liquids|solids", 3), AT(type, in field_of), \
+      .doc = "Which particles picture.field colours. Those of the other kind have their own colours, and " \
+             "do not count for the range of the colours." }, \
     { .key = "picture.map", CHOICE("viridis|magma|cividis|coolwarm|gray", 5), AT(type, in map), \
       .doc = "The colours of picture.field, from its least value to its largest." }, \
     { .key = "picture.min", REAL, AT(type, in min), RANGE(-1e30, 1e30), \

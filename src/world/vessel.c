@@ -385,24 +385,6 @@ static int holds(const tobi_region *r, const double x[3], int dimension)
     return !(r->radius > 0) || square < r->radius*r->radius;
 }
 
-static tobi_status check_overlap(const flood *f, int label, const tobi_world *w, const tobi_region *r,
-                                 const char *whose, tobi_error *err)
-{
-    const double *lower = w->system[0].box.lower;
-    for (int64_t c = 0; c < f->cells; c++) {
-        double x[3];
-        if (f->label[c] != label) continue;
-        place(f, c, x);
-        for (int a = 0; a < f->dimension; a++) x[a] += lower[a];
-        for (int k = 0; k < w->region_count; k++)
-            if (w->regions[k].system == r->system && holds(&w->regions[k], x, f->dimension))
-                return tobi_fail(err, TOBI_INVALID, "%s: what fill[%d] fills of vessel '%s' overlaps another "
-                                 "region, fill[%d] of its owner, at (%.4g, %.4g, %.4g) m", whose, r->number,
-                                 f->b->name, w->regions[k].number, x[0], x[1], x[2]);
-    }
-    return TOBI_OK;
-}
-
 static const char *name_owner(const tobi_world *w, const tobi_region *r, char text[160])
 {
     const tobi_system *s = &w->system[r->system];
@@ -410,6 +392,26 @@ static const char *name_owner(const tobi_world *w, const tobi_region *r, char te
     snprintf(text, 160, "%s '%s'", solid ? "solid" : "fluid",
              solid ? s->solids[r->owner].name : s->fluid[r->owner].name);
     return text;
+}
+
+static tobi_status check_overlap(const flood *f, int label, const tobi_world *w, const tobi_region *r,
+                                 const char *whose, tobi_error *err)
+{
+    const double *lower = w->system[0].box.lower;
+    for (int64_t c = 0; c < f->cells; c++) {
+        double x[3];
+        char text[160];
+        if (f->label[c] != label) continue;
+        place(f, c, x);
+        for (int a = 0; a < f->dimension; a++) x[a] += lower[a];
+        for (int k = 0; k < w->region_count; k++)
+            if (w->regions[k].system == r->system && holds(&w->regions[k], x, f->dimension))
+                return tobi_fail(err, TOBI_INVALID, "%s: what fill[%d] fills of vessel '%s' overlaps another "
+                                 "region, fill[%d] of %s, at (%.4g, %.4g, %.4g) m: leave the vessel out of "
+                                 "that one", whose, r->number, f->b->name, w->regions[k].number,
+                                 name_owner(w, &w->regions[k], text), x[0], x[1], x[2]);
+    }
+    return TOBI_OK;
 }
 
 /* Says which key of the scene a failure is about. */

@@ -92,6 +92,7 @@ expect 1 "there is no output 9" picture dam --output 9
 expect 1 "the output has no field 'vorticity'; output.fields of the scene writes it" \
     picture dam --set output.picture.field=vorticity
 expect 1 "there is no field \"pressur\"" picture dam --set output.picture.field=pressur
+expect 1 "is \"solids\", but the scene has none" picture dam --set output.picture.field_of=solids
 expect 1 "\"nobody\" is no body of the scene" run dam.json --out no --set output.picture.follow=nobody
 expect 2 "--output: 'x' is not a number from 0 on" picture dam --output x
 expect 1 "cannot write /no/such/p.png" picture dam --out /no/such/p.png

@@ -198,11 +198,23 @@ static void add_pair(int64_t i, const image *m, sums *s)
     }
 }
 
+/* 0 if no image of j can be within the support of i: along one axis all are too far. */
+static int may_reach(int64_t i, int64_t j)
+{
+    for (int a = 0; a < view.dimension; a++) {
+        const double x = (&pool.p.position[i].x)[a], y = (&pool.p.position[j].x)[a];
+        const double below = fabs(x + y), above = fabs(x + y - 2*pool.box.size[a]);
+        if (fmin(fabs(x - y), fmin(below, above)) > view.h) return 0;
+    }
+    return 1;
+}
+
 static sums sum_pairs(int64_t i)
 {
     const int dim = view.dimension;
     sums s = {.concentration = weight(0)};
-    for (int64_t j = 0; j < view.count; j++)
+    for (int64_t j = 0; j < view.count; j++) {
+        if (!may_reach(i, j)) continue;
         for (int code = 0; code < (dim == 3 ? 27 : 9); code++) {
             image m = {.j = j, .self = i == j && code == 0};
             double r2 = 0;
@@ -217,6 +229,7 @@ static sums sum_pairs(int64_t i)
             m.r = sqrt(r2);
             if (!m.self && m.r < view.h) add_pair(i, &m, &s);
         }
+    }
     return s;
 }
 

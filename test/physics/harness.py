@@ -157,7 +157,7 @@ class Case:
     def compute(self, scene, target, command):
         """Exit code and complaint of a run; with --resume only of what an earlier start left undone."""
         words = ["run", str(scene), "--out", str(target), "--force", *command]
-        more = ["--quiet", "--threads", str(self.args.threads)]
+        more = ["--quiet"] + ([] if "--threads" in command else ["--threads", str(self.args.threads)])
         if not self.args.resume:
             return self.call(words + more)
         note, key = target.with_name(target.name + ".note"), self.run_key(scene, command)

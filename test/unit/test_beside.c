@@ -106,6 +106,50 @@ static void periodic_sides(void **state)
     tobi_world_destroy(w);
 }
 
+/* A blade may start in the water beside a solid: what it may not start in is the solid. */
+static void a_blade_under_water(void **state)
+{
+    (void)state;
+    for (int in = 0; in < 2; in++) {
+        tobi_world *w = make_world("dfsph", 0, 0, 0.175);
+        tobi_body_def knife = tobi_default_body_def();
+        knife.name = "knife";
+        knife.blade = 1;
+        knife.box_min[0] = 0.197; knife.box_max[0] = 0.203;
+        knife.box_min[1] = 0.06; knife.box_max[1] = in ? 0.14 : 0.1;
+        knife.box_min[2] = -0.1; knife.box_max[2] = 0.1;
+        knife.edge_start[0] = knife.edge_end[0] = 0.2;
+        knife.edge_start[1] = knife.edge_end[1] = knife.box_max[1];
+        OK(tobi_world_add_body(w, &knife, &err));
+        if (in) REFUSED(tobi_world_start(w, &err), TOBI_INVALID,
+                        "body 'knife' is a blade and starts inside solid 'jelly'");
+        else OK(tobi_world_start(w, &err));
+        tobi_world_destroy(w);
+    }
+}
+
+/* A body that drifts through a periodic side would be seen on one side of it alone. A wall reaches through
+   both. */
+static void bodies_at_periodic_sides(void **state)
+{
+    (void)state;
+    for (int wall = 0; wall < 2; wall++) {
+        tobi_world *w = make_world("dfsph", 0, 1, 0.175);
+        tobi_body_def raft = tobi_default_body_def();
+        raft.name = "raft";
+        raft.dynamics = TOBI_FREE;
+        raft.velocity[0] = 1;
+        raft.box_min[0] = wall ? -0.2 : 0.4; raft.box_max[0] = wall ? 0.7 : 0.47;
+        raft.box_min[1] = 0.3; raft.box_max[1] = 0.35;
+        OK(tobi_world_add_body(w, &raft, &err));
+        OK(tobi_world_advance(w, 0.02, NULL, &err));
+        if (wall) OK(tobi_world_advance(w, 0.05, NULL, &err));
+        else REFUSED(tobi_world_advance(w, 0.05, NULL, &err), TOBI_UNSUPPORTED,
+                     "body 'raft' reaches from x = 0.43");
+        tobi_world_destroy(w);
+    }
+}
+
 /* A jelly lies on a table, with and without a liquid in the scene, and falls when it is taken away. */
 static void a_table_is_taken_away(void **state)
 {
@@ -214,6 +258,7 @@ int main(void)
         cmocka_unit_test(finer_solids),
         cmocka_unit_test(coarser_solids_are_refused),
         cmocka_unit_test(periodic_sides),
+        cmocka_unit_test(a_blade_under_water), cmocka_unit_test(bodies_at_periodic_sides),
         cmocka_unit_test(a_table_is_taken_away),
         cmocka_unit_test(between_two_liquids),
         cmocka_unit_test(light_clamps),

@@ -21,7 +21,8 @@ static const char text[] =
     "      \"stiffness\": 1, \"point\": [0, 0, 0], \"to\": [1, 1, 1] },"
     "    { \"name\": \"b\", \"body\": \"raft\", \"stiffness\": 1,"
     "      \"point\": [0, 0, 0], \"to\": [1, 1, 1] } ],"
-    "  \"output\": { \"views\": [ { \"name\": \"frame\" }, { \"name\": \"v\" }, { \"name\": \"v\" } ] } }";
+    "  \"output\": { \"views\": [ { \"name\": \"frame\" }, { \"name\": \"v\" },"
+    "    { \"name\": \"v\", \"picture\": { \"field_of\": \"solids\" } } ] } }";
 
 static const char *const expected[] = {
     "lines[0].body: \"pier\" is prescribed; a line holds a free or controlled body",
@@ -34,6 +35,7 @@ static const char *const expected[] = {
     "lines[1].rests: is of a catenary",
     "lines[2].body: \"raft\" is no body of the scene",
     "output.views[0].name: is \"frame\", the name of the output's own pictures",
+    "output.views[2].picture.field_of: is \"solids\", but the scene has none",
     "output.views[2].name: \"v\" is the name of views[1] too",
 };
 

@@ -178,7 +178,7 @@ static void test_mistakes(void **state)
            HALF, "", "\"cup\" is no vessel: bodies[0] needs");
     refuse(cup, HALF, "\"gravity\": [0, 0, 0],", "without gravity nothing is up");
     refuse(cup, HALF ", { \"box\": { \"min\": [0.2, 0.2, 0.2], \"max\": [0.4, 0.4, 0.4] } }", "",
-           "overlaps another region");
+           "overlaps another region, fill[1] of fluid 'water', at (");
     refuse(cup, "{ \"vessel\": \"cup\", \"level\": 0.5, \"mesh\": \"cup.obj\" }", "",
            "must have one of box, sphere, mesh and vessel, it has several");
 }

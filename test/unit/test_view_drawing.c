@@ -1,4 +1,5 @@
-/* From a moment to a picture: what is hidden, colours of kinds and pieces, bodies by name, paths. */
+/* From a moment to a picture: what is hidden, colours of kinds and pieces, which of them a field colours,
+   bodies by name, paths. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -87,6 +88,95 @@ static void solids_beside_liquids_have_colors(void **state)
     looks = before;
 }
 
+enum { SIDE = 64, WIDE = 20, DEEP = 3, BLOCK = WIDE*WIDE*DEEP };
+
+/* A liquid on the left with speeds of 0 to 1 m/s from below to above, a solid on the right with 2 to 3. */
+static void make_halves(int dimension, tobi_moment *m)
+{
+    static double at[BLOCK][3], material_of[BLOCK], velocity[BLOCK][3];
+    static tobi_moment_field two[2] = { { field_name, 1, material_of }, { velocity_name, 3, velocity[0] } };
+    const int up = dimension == 2 ? 1 : 2;
+    memset(at, 0, sizeof at);
+    *m = (tobi_moment){ .count = dimension == 2 ? WIDE*WIDE : BLOCK, .positions = at, .field_count = 2,
+                        .fields = two };
+    for (int i = 0; i < m->count; i++) {
+        const int x = i%WIDE, z = i/WIDE%WIDE;
+        at[i][0] = (x + 0.5)/WIDE, at[i][up] = (z + 0.5)/WIDE;
+        if (dimension == 3) at[i][1] = (i/WIDE/WIDE + 0.5)/WIDE;
+        material_of[i] = x >= WIDE/2;
+        velocity[i][0] = (double)z/(WIDE - 1) + 2*material_of[i];
+    }
+}
+
+/* Of what a pixel of the left or right half shows, low or high in it. */
+static const uint8_t *see_half(const uint8_t rgb[SIDE][SIDE][3], int right, int high)
+{
+    return rgb[high ? SIDE*16/100 : SIDE*84/100][right ? SIDE*7/10 : SIDE*3/10];
+}
+
+/* view: of its colours and lines; the range of the colours is written to it. */
+static void draw_halves(int dimension, tobi_view_def *view, uint8_t rgb[SIDE][SIDE][3])
+{
+    tobi_material_look two[2] = { LOOK(.color = { 0, 200, 0 }, .visible = 1, .liquid = 1),
+                                  LOOK(.color = { 200, 0, 0 }, .visible = 1) };
+    const tobi_looks halves = { .dimension = dimension, .box_max = { 1, 1, 1 }, .spacing = 1.0/WIDE,
+                                .material_count = 2, .materials = two };
+    tobi_error err = { 0 };
+    tobi_moment m;
+    tobi_drawing *d;
+    make_halves(dimension, &m);
+    view->width = view->height = SIDE;
+    view->samples = 1;
+    view->field = "velocity";
+    view->position[0] = view->look_at[0] = view->position[2] = view->look_at[2] = 0.5;
+    view->position[1] = -3;
+    view->angle = 20;
+    if (tobi_drawing_make(&halves, &m, view, &d, &err)) fail_msg("%s", err.text);
+    tobi_picture *p = tobi_drawing_picture(d);
+    p->title = p->label = NULL;
+    if (tobi_picture_draw(p, &rgb[0][0][0], &err)) fail_msg("%s", err.text);
+    view->min = p->value_min, view->max = p->value_max;
+    tobi_drawing_free(d);
+}
+
+/* The kind that shows the field has purple below and yellow above, the ends of the map; the other one is red
+   or green all over, as it is given. */
+static void fields_of_one_kind(void **state)
+{
+    (void)state;
+    static uint8_t rgb[SIDE][SIDE][3];
+    for (int k = 0; k < 8; k++) {
+        const int solids = k & 1;
+        tobi_view_def view = { .look = 1 + (k >> 1 & 1),
+                               .field_of = solids ? TOBI_FIELD_OF_SOLIDS : TOBI_FIELD_OF_LIQUIDS };
+        draw_halves(2 + (k >> 2), &view, rgb);
+        assert_true(view.min == 2*solids && view.max == 1 + 2*solids);
+        for (int high = 0; high < 2; high++) {
+            const uint8_t *by_field = see_half(rgb, solids, high), *own = see_half(rgb, !solids, high);
+            const int r = by_field[0], g = by_field[1], b = by_field[2], most = own[solids];
+            const int least = own[!solids];
+            if (high ? r < 1.5*b || g < 1.5*b : r < 1.5*g || b < 1.5*g) fail_msg("%d: %d %d %d", k, r, g, b);
+            if (most < 100 || most < 3*least || most < 3*own[2]) fail_msg("%d: %d of %d", k, least, most);
+        }
+    }
+}
+
+/* Between the values of the kind that does not show the field. */
+static void isolines_of_one_kind(void **state)
+{
+    (void)state;
+    static uint8_t lines[SIDE][SIDE][3], bare[SIDE][SIDE][3];
+    for (int k = 0; k < 8; k++) {
+        const int solids = k & 1, all = k >> 2;
+        tobi_view_def view = { .look = TOBI_LOOK_SURFACE, .min = solids ? 0 : 2, .max = solids ? 1 : 3 };
+        if (!all) view.field_of = solids ? TOBI_FIELD_OF_SOLIDS : TOBI_FIELD_OF_LIQUIDS;
+        draw_halves(2 + (k >> 1 & 1), &view, bare);
+        view.isolines = 3;
+        draw_halves(2 + (k >> 1 & 1), &view, lines);
+        assert_int_equal(memcmp(bare, lines, sizeof bare) != 0, all);
+    }
+}
+
 static void bodies_are_found_by_name(void **state)
 {
     (void)state;
@@ -157,6 +247,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(materials_have_looks),
         cmocka_unit_test(solids_beside_liquids_have_colors), cmocka_unit_test(bodies_are_found_by_name),
+        cmocka_unit_test(fields_of_one_kind), cmocka_unit_test(isolines_of_one_kind),
         cmocka_unit_test(tracks_are_read), cmocka_unit_test(wrong_calls_are_refused)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
