@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 #include <cmocka.h>
-#include "scene/scene.h"
+#include "scene_text.h"
 #include "world/world.h"
 
 #define WATER "{ \"name\": \"water\", \"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [0.4, 0.2] } } ] }"
@@ -18,16 +18,10 @@ static tobi_status make(const char *method, int threads, const char *fluids, con
                         tobi_error *err)
 {
     char text[3000];
-    tobi_scene *scene;
-    *w = NULL;
     snprintf(text, sizeof text, "{ \"dimension\": 2, \"method\": \"%s\", \"domain\": { \"min\": [0, 0],\n"
              "\"max\": [0.4, 0.5] }, \"spacing\": 0.02, \"end_time\": 1, \"threads\": %d, %s\n"
              "\"fluids\": [ %s ] }", method, threads, more, fluids);
-    TOBI_TRY(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, err));
-    tobi_status status = tobi_scene_build(scene, w, err);
-    if (status == TOBI_OK) status = tobi_world_start(*w, err);
-    tobi_scene_free(scene);
-    return status;
+    return start_scene(text, w, err);
 }
 
 static void must(tobi_status status, const tobi_error *err)
