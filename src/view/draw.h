@@ -174,6 +174,8 @@ bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, int
                    float depth);
 /* In 2-D: the section z = 0 of its surface, as lines. */
 bool view_add_outline(geometry *g, const canvas *c, const tobi_picture_mesh *m, float width);
+/* Where a triangle crosses the plane z = 0; the inside of its mesh is to the left. False: nowhere. */
+bool view_cross_triangle(const tobi_picture_mesh *m, const int32_t v[3], double end[2][3]);
 
 /* cut.c */
 enum { CUT_CORNERS = 8 };        /* of a triangle that two planes have cut: more than it can have */
@@ -212,10 +214,18 @@ tobi_status view_paint_glass(canvas *c, const geometry *g, const geometry *water
 
 /* Straight lines in view space. */
 typedef struct segments { vec (*end)[2]; int64_t count, room; } segments;
+/* Closed lines, around what is seen through and around what hides the liquid behind it. */
+enum { COVER_CLEAR, COVER_OPAQUE, COVERS };
 /* isolines.c; false: no memory. In 2-D, of a group, at f->isolines values between low and high. */
 typedef struct surface_request surface_request;
 bool view_add_segment(segments *s, vec from, vec to);
 bool view_find_isolines(const canvas *c, const surface_request *r, double low, double high, segments *out);
+
+/* cover.c. The section z = 0 of a mesh as closed lines around its inside, nothing if they are open; false: no
+   memory. Of nodes, the share in such lines of the square around each. */
+bool view_add_section(segments *out, const canvas *c, const tobi_picture_mesh *m);
+typedef struct cover_grid { float low[2], edge; int size[2]; } cover_grid;      /* view space; nodes */
+void view_cover_nodes(const cover_grid *g, const segments *lines, int lists, float *out);
 
 /* skin.c: colours that are what view_fit_rest finds become marks of images, from a vertex and a face on;
    false: no memory. The colour of one place. */
@@ -231,6 +241,7 @@ struct surface_request {
     const vec *scale;            /* not NULL: x of a colour is a value, 0 to 1, on this scale      */
     segments *isolines;           /* gets lines at f->isolines values; NULL = none                  */
     segments *outline;           /* of regions: gets where they end                                */
+    const segments *cover;       /* of regions: what else is there, see COVERS; or NULL            */
     const tobi_picture_skin *skin;      /* not NULL: colours are what view_fit_rest finds      */
     const struct rest_map *map;  /* with a skin                                                    */
     int     skin_number;         /* of its image                                                   */

@@ -96,15 +96,15 @@ bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, int
     return enough;
 }
 
-/* Where a triangle crosses the plane z = 0. */
-static bool find_crossing(const tobi_picture_mesh *m, const int32_t v[3], double end[2][3])
+bool view_cross_triangle(const tobi_picture_mesh *m, const int32_t v[3], double end[2][3])
 {
     int count = 0;
     for (int k = 0; k < 3 && count < 2; k++) {
         const double *a = m->vertices[v[k]], *b = m->vertices[v[(k + 1)%3]];
         if ((a[2] < 0) == (b[2] < 0)) continue;
         const double t = a[2]/(a[2] - b[2]);
-        for (int c = 0; c < 3; c++) end[count][c] = c < 2 ? (1 - t)*a[c] + t*b[c] : 0;
+        const int place = a[2] < 0;
+        for (int c = 0; c < 3; c++) end[place][c] = c < 2 ? (1 - t)*a[c] + t*b[c] : 0;
         count++;
     }
     return count == 2 && isfinite(end[0][0] + end[0][1] + end[1][0] + end[1][1]);
@@ -117,7 +117,7 @@ bool view_add_outline(geometry *g, const canvas *c, const tobi_picture_mesh *m, 
     if (!view_reserve(g, 6*m->triangle_count, 2*m->triangle_count, 0)) return false;
     for (int64_t t = 0; t < m->triangle_count; t++) {
         double end[2][3];
-        if (!find_crossing(m, m->triangles[t], end)) continue;
+        if (!view_cross_triangle(m, m->triangles[t], end)) continue;
         const vec a = view_point(&c->camera, end[0]), b = view_point(&c->camera, end[1]);
         const vec along = vec_scale(0.5f*width, vec_unit(vec_sub(b, a))), across = { -along.y, along.x, 0 };
         const vec low = vec_sub(a, along), high = vec_add(b, along);      /* they join at corners */

@@ -123,6 +123,7 @@ typedef struct scene {
     vec *color;                  /* of particles, or their scaled values; NULL: water's */
     vec scale[SCALE_STEPS + 1];  /* of values, for surfaces in their colours    */
     segments isolines, outline;
+    segments cover[COVERS];      /* in 2-D: of bodies and solids                */
     int32_t *row;                /* of particles                                */
     vec *rest;                   /* of particles, see view_fit_rest; NULL: no skin */
     double low, high;            /* values of the colour map's ends             */
@@ -167,6 +168,7 @@ static void free_scene(scene *s)
     free(s->c.inside);
     free(s->isolines.end);
     free(s->outline.end);
+    for (int k = 0; k < COVERS; k++) free(s->cover[k].end);
 }
 
 static tobi_status no_memory(const tobi_picture *f, tobi_error *err)
@@ -343,6 +345,8 @@ static bool add_body(scene *s, int i)
     const tobi_picture_mesh *m = &s->f->meshes[i];
     const bool clear = m->transparency > 0;
     const float depth = clear ? -logf(clampf(m->transparency, 0.004f, 0.996f)) : 1;
+    if (s->f->dimension == 2 && !view_add_section(&s->cover[m->hollow || clear ? COVER_CLEAR : COVER_OPAQUE],
+                                                  &s->c, m)) return false;
     if (m->hollow && s->f->dimension == 2)
         return view_add_outline(&s->solids, &s->c, m, 0.5f*(float)s->f->radius);
     return view_add_mesh(clear ? &s->glass : &s->solids, &s->c, m, s->c.images[i] ? i : -1,
@@ -398,16 +402,25 @@ static tobi_status add_discs(scene *s, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Of solids, then of liquids, which reach up to those and to bodies. */
 static tobi_status add_regions(scene *s, tobi_error *err)
 {
     const tobi_picture *f = s->f;
-    surface_request all = { .f = f, .row = s->row, .color = s->color, .level = 0.5f, .outline = &s->outline };
-    bool within;
-    all.plain = view_color_of(f, 0);
-    for (int64_t i = 0; i < f->particle_count; i++)
-        if (view_beyond(f, f->positions[i], 0.5*f->slice) <= 12*f->radius)
-            s->row[all.count++] = (int32_t)i;
-    return add_groups(s, all, &s->solids, &s->solids, &within, err);
+    for (int opaque = f->opaque ? 1 : 0; opaque >= 0; opaque--) {
+        surface_request all = { .f = f, .row = s->row, .color = s->color, .level = 0.5f,
+                                .outline = &s->outline };
+        bool within;
+        all.plain = view_color_of(f, 0);
+        all.cover = opaque ? NULL : s->cover;
+        for (int64_t i = 0; i < f->particle_count; i++)
+            if (view_beyond(f, f->positions[i], 0.5*f->slice) <= 12*f->radius
+                && (f->opaque && f->opaque[i]) == opaque) s->row[all.count++] = (int32_t)i;
+        TOBI_TRY(add_groups(s, all, &s->solids, &s->solids, &within, err));
+        for (int64_t k = 0; opaque && k < s->outline.count; k++)
+            if (!view_add_segment(&s->cover[COVER_OPAQUE], s->outline.end[k][0], s->outline.end[k][1]))
+                return no_memory(f, err);
+    }
+    return TOBI_OK;
 }
 
 static tobi_status add_isolines(scene *s, tobi_error *err)

@@ -1,7 +1,8 @@
 /* In 2-D: the region that a group of particles fills. The kernel sum on the nodes of a grid, then what of
-   each of its cells lies above a level (marching squares: Lorensen, Cline 1987, in the plane). At walls the
-   sum is divided by the share of the kernel inside, and the region ends in the wall. Particles alone become
-   discs. Drawback: one grid over the extent of a group, in one thread. */
+   each of its cells lies above a level (marching squares: Lorensen, Cline 1987, in the plane). At walls,
+   bodies and solids the sum is divided by the share of the kernel that is free of them. The region ends in
+   the wall, and behind bodies and solids, which are drawn before it. Particles alone become discs.
+   Drawback: one grid over the extent of a group, in one thread. */
 #include "view/isosurface.h"
 #include "view/shade.h"
 #include "view/skin.h"
@@ -9,7 +10,10 @@
 #include <string.h>
 
 /* In cells, half a spacing each: of sums, and of colours, which stay sharp. */
-enum { MOST_NODES = 1 << 24, REACH = 6, COLOR_REACH = 3 };
+enum { MOST_NODES = 1 << 24, REACH = 6, COLOR_REACH = 3, NEAR = 8 };
+
+/* Of the kernel: what is more covered is within a body, or between two, where sums are errors of the grid. */
+static const float least_room = 0.02f;
 
 /* Of a solid: below this sum a particle is in a row, or alone, and becomes a disc. */
 static const float in_solid = 0.3f;
@@ -24,8 +28,11 @@ typedef struct plane {
     vec   *color;                /* of nodes; the mean of those around, the nearest counts  */
     float *weight;               /* most by far. NULL: one colour for all                   */
     float *count;                /* of particles: what each counts; NULL: 1                 */
+    float *covered;              /* of nodes: share in bodies and solids; NULL: nowhere     */
+    float *clear;                /* of nodes: share in what is seen through                 */
+    uint8_t *near;               /* of blocks of nodes                                      */
     int32_t *vertex;             /* of nodes inside, or -1                                  */
-    float  behind;               /* m, depth of what is drawn: bodies are before it         */
+    float  behind;               /* m, depth of what is drawn: after bodies and solids      */
 } plane;
 
 static int64_t node_at(const plane *p, int x, int y) { return (int64_t)y*p->size[0] + x; }
@@ -94,7 +101,54 @@ static float sum_per_particle(const plane *p)
     return 4/(spacings*spacings*3.14159265f);
 }
 
-/* Sums become 1 inside whatever wall is near; beyond walls and the clip plane they fall through the level. */
+/* Whether a node has cover within reach, by blocks of nodes. */
+static uint8_t *near_at(const plane *p, int x, int y)
+{
+    return &p->near[(int64_t)(y/NEAR)*(p->size[0]/NEAR + 1) + x/NEAR];
+}
+
+/* Covers of the domain's nodes; false: no memory. */
+static bool find_covers(plane *p)
+{
+    const segments *cover = p->r->cover;
+    const size_t n = (size_t)p->size[0]*(size_t)p->size[1];
+    const vec origin = view_point(&p->c->camera, (double[3]){ p->low[0], p->low[1], 0 });
+    const cover_grid g = { { origin.x, origin.y }, (float)p->edge, { p->size[0], p->size[1] } };
+    if (!cover || cover[COVER_CLEAR].count + cover[COVER_OPAQUE].count == 0) return true;
+    p->near = calloc((size_t)(p->size[0]/NEAR + 1)*(size_t)(p->size[1]/NEAR + 1), 1);
+    p->covered = malloc(n*sizeof *p->covered);
+    p->clear = malloc(n*sizeof *p->clear);
+    if (!p->near || !p->covered || !p->clear) return false;
+    view_cover_nodes(&g, cover, COVERS, p->covered);
+    view_cover_nodes(&g, &cover[COVER_CLEAR], 1, p->clear);
+    for (int y = 0; y < p->size[1]; y++)
+        for (int x = 0; x < p->size[0]; x++) {
+            float *covered = &p->covered[node_at(p, x, y)];
+            if ((float)x < p->wall[0][0] || (float)x > p->wall[0][1] || (float)y < p->wall[1][0]
+                || (float)y > p->wall[1][1]) *covered = 0;
+            for (int k = 0; *covered > 0 && k < 9; k++) {
+                const int m = x + NEAR*(k%3 - 1), n = y + NEAR*(k/3 - 1);
+                if (m >= 0 && n >= 0 && m < p->size[0] && n < p->size[1]) *near_at(p, m, n) = 1;
+            }
+        }
+    return true;
+}
+
+/* Of the kernel around a node, the share in covers. */
+static float cover_around(const plane *p, int x, int y)
+{
+    float sum = 0;
+    for (int n = y - REACH + 1; n < y + REACH; n++)
+        for (int m = x - REACH + 1; m < x + REACH; m++) {
+            const float t = 1 - (float)((m - x)*(m - x) + (n - y)*(n - y))/(REACH*REACH);
+            if (t > 0 && m >= 0 && n >= 0 && m < p->size[0] && n < p->size[1])
+                sum += t*t*t*p->covered[node_at(p, m, n)];
+        }
+    return 4/(REACH*REACH*3.14159265f)*sum;
+}
+
+/* Sums become 1 inside whatever wall or body is near; beyond walls and the clip plane, and in what is seen
+   through, they fall through the level. */
 static void limit_nodes(plane *p)
 {
     const tobi_picture *f = p->r->f;
@@ -104,12 +158,15 @@ static void limit_nodes(plane *p)
             float *node = &p->node[node_at(p, m, n)], most = INFINITY;
             const float at[2] = { (float)m, (float)n };
             const double x[3] = { p->low[0] + p->edge*m, p->low[1] + p->edge*n, 0 };
-            *node *= per_particle;
+            float room = 1;
             for (int k = 0; k < 2; k++) {
                 const float l = at[k] - p->wall[k][0], h = p->wall[k][1] - at[k];
-                *node /= share_inside(l/REACH)*share_inside(h/REACH);
+                room *= share_inside(l/REACH)*share_inside(h/REACH);
                 most = fminf(most, level + 0.5f*fminf(l, h));
             }
+            if (p->near && *near_at(p, m, n) && *node > 0) room -= cover_around(p, m, n);
+            *node *= per_particle/fmaxf(room, least_room);
+            if (p->clear) most = fminf(most, level + 0.5f - p->clear[node_at(p, m, n)]);
             if (f->clip) most = fminf(most, level - 0.5f*(float)(view_beyond(f, x, 0.5*f->slice)/p->edge));
             *node = fminf(*node, most);
         }
@@ -246,6 +303,7 @@ static bool make_region(plane *p, geometry *g)
         }
         for (int64_t i = 0; enough && i < p->r->count; i++) add_particle(p, i);
     }
+    enough = enough && find_covers(p);
     if (enough) limit_nodes(p);
     for (size_t k = 0; enough && k < n; k++) p->vertex[k] = -1;
     for (int y = 0; enough && y + 1 < p->size[1]; y++)
@@ -258,13 +316,16 @@ tobi_status view_add_region(geometry *g, const canvas *c, const surface_request 
     const tobi_picture *f = r->f;
     const int64_t vertex = g->vertices, face = g->faces;
     plane p = { .c = c, .r = r };
-    p.behind = 10*(float)(f->box_max[0] - f->box_min[0] + f->box_max[1] - f->box_min[1]);
+    p.behind = (r->cover ? 10 : 8)*(float)(f->box_max[0] - f->box_min[0] + f->box_max[1] - f->box_min[1]);
     bool enough = !place_nodes(&p) || make_region(&p, g);
     if (enough && r->skin) enough = view_put_skin(c, r, g, vertex, face);
     for (int64_t i = vertex; i < g->vertices; i++) g->place[i].z = p.behind;
     if (enough) enough = add_discs(&p, g);
     free(p.node);
     free(p.count);
+    free(p.covered);
+    free(p.clear);
+    free(p.near);
     free(p.color);
     free(p.weight);
     free(p.vertex);

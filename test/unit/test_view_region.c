@@ -235,6 +235,82 @@ static void test_even_lines(void **state)
     if (least < 100 || most > 1.1*least) fail_msg("%d to %d", least, most);
 }
 
+/* Water of 0.4 m, whose particles end 0.8 spacings before what stands at 0.3 .. 0.5 m, 0.5 m high, and a
+   drop three spacings above that. */
+enum { TALL_SIDE = 1000, STANDING_BODY = 1, STANDING_GLASS, STANDING_SOLID };
+
+static bool is_taken(double x, double y, double margin)
+{
+    return x > 0.3 - margin && x < 0.5 + margin && y < 0.5 + margin;
+}
+
+static void draw_standing(int kind, bool water, uint8_t (*rgb)[TALL_SIDE][3])
+{
+    static double place[5000][3];
+    static float value[5000];
+    static int32_t group[5000];
+    static uint8_t opaque[5000];
+    static const float map[1][3] = { { 1, 0, 0 } };
+    static const int32_t quad[6][4] = { { 0, 2, 6, 4 }, { 1, 5, 7, 3 }, { 0, 4, 5, 1 },
+                                        { 2, 3, 7, 6 }, { 0, 1, 3, 2 }, { 4, 6, 7, 5 } };
+    double corner[8][3];
+    int32_t triangle[12][3];
+    tobi_error err = { 0 };
+    tobi_picture p = tobi_default_picture();
+    tobi_picture_mesh mesh = { .vertices = (const double (*)[3])corner, .vertex_count = 8,
+                               .triangles = (const int32_t (*)[3])triangle, .triangle_count = 12,
+                               .color = { 0, 0, 1 }, .transparency = kind == STANDING_GLASS ? 0.5f : 0 };
+    for (int k = 0; k < 8; k++)
+        corner[k][0] = k & 1 ? 0.5 : 0.3, corner[k][1] = k & 2 ? 0.5 : 0, corner[k][2] = k & 4 ? 1 : -1;
+    for (int k = 0; k < 12; k++)
+        for (int c = 0; c < 3; c++) triangle[k][c] = quad[k/2][c ? k%2 + c : 0];
+    for (int i = 0; i < 10000; i++) {
+        const double y = 0.01*(i/100 + 0.5);
+        const bool taken = is_taken(0.01*(i%100 + 0.5), y, 0);
+        const double x = 0.01*(i%100) + (taken ? 0.005 : 0.002);
+        const bool drop = fabs(x - 0.4) < 0.03 && y > 0.53 && y < 0.58;
+        const bool below = y < 0.4 && !is_taken(x, y, 0.00799);
+        if (taken ? kind != STANDING_SOLID : !water || !(below || drop)) continue;
+        memcpy(place[p.particle_count], (double[3]){ x, y, 0 }, sizeof *place);
+        opaque[p.particle_count] = (uint8_t)taken;
+        group[p.particle_count++] = taken;
+    }
+    p.width = p.height = TALL_SIDE;
+    p.dimension = 2;
+    p.box_max[0] = p.box_max[1] = 1;
+    p.positions = (const double (*)[3])place;
+    p.values = value, p.value_max = 1;
+    p.group = group, p.opaque = opaque;
+    p.palette = map, p.palette_count = 1;
+    p.radius = 0.005;
+    p.meshes = &mesh, p.mesh_count = kind == STANDING_SOLID ? 0 : 1;
+    if (tobi_picture_draw(&p, &rgb[0][0][0], &err)) fail_msg("%s", err.text);
+}
+
+static int pixel_at(double x) { return (int)(TALL_SIDE*(0.5 + 0.92*(x - 0.5))); }
+
+/* Water reaches up to bodies and solids, and not where there is air between, nor below glass. */
+static void test_standing_in_water(void **state)
+{
+    (void)state;
+    static uint8_t wet[TALL_SIDE][TALL_SIDE][3], dry[TALL_SIDE][TALL_SIDE][3];
+    for (int kind = STANDING_BODY; kind <= STANDING_SOLID; kind++) {
+        draw_standing(kind, true, wet);
+        draw_standing(kind, false, dry);
+        for (int y = pixel_at(1 - 0.38); y < pixel_at(1 - 0.02); y++)
+            for (int x = pixel_at(0.01); x < pixel_at(0.99); x++) {
+                const bool water = memcmp(wet[y][x], dry[y][x], 3) != 0;
+                if (x < pixel_at(0.3) - 1 || x > pixel_at(0.5) + 1) assert_true(water);
+                else if (x > pixel_at(0.3) + 1 && x < pixel_at(0.5) - 1) assert_false(water);
+            }
+        for (int x = pixel_at(0.31); x < pixel_at(0.49); x++)
+            for (int y = pixel_at(1 - 0.522); y < pixel_at(1 - 0.49); y++)
+                assert_memory_equal(wet[y][x], dry[y][x], 3);
+        const int drop = pixel_at(1 - 0.55), middle = pixel_at(0.4);
+        assert_memory_not_equal(wet[drop][middle], dry[drop][middle], 3);
+    }
+}
+
 /* Numbers of the colour bar and its label end before the picture does. */
 static void test_color_bar(void **state)
 {
@@ -266,6 +342,7 @@ int main(void)
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_regions), cmocka_unit_test(test_flat_pictures),
                                         cmocka_unit_test(test_color_bar),
                                         cmocka_unit_test(test_isolines_of_groups),
+                                        cmocka_unit_test(test_standing_in_water),
                                         cmocka_unit_test(test_even_lines) };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
