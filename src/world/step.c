@@ -10,6 +10,7 @@
 #include "world/openings.h"
 #include "base/error.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static tobi_status remember(tobi_world *w, tobi_error *err)
@@ -234,18 +235,38 @@ static const char *name_cfl(const tobi_system *s, double *value)
     return mpm ? "mlsmpm.cfl" : d->time_step > 0 ? "time_step" : "cfl";
 }
 
+/* Spacings that the fastest particle goes while a body that has come back is still the likely cause. */
+static const double RETURN_REACH = 20;
+
+/* What may help besides a smaller step. Liquid in a body that comes back lands in a layer beside it at once,
+   crowded as it never is else: pressure throws it. */
+static void name_remedy(const tobi_system *s, double limit, char text[240])
+{
+    const tobi_body *b = s->sim->bodies;
+    for (int k = 0; k < s->sim->body_count; k++, b++) {
+        const double since = s->sim->time - b->absent[1];
+        if (!(b->absent[1] > 0 && since >= 0 && since*limit < RETURN_REACH*s->smoothing.spacing)) continue;
+        snprintf(text, 240, ". Body '%s' has just come back, and the liquid in it was pushed out at once: "
+                 "let a thick body come into liquid by a motion", b->name);
+        return;
+    }
+    if (s->sim->def.speed_limit <= 0)
+        snprintf(text, 240, ", or a speed_limit, where liquid is meant to be that fast");
+}
+
 static tobi_status check_runaway(const tobi_system *s, tobi_error *err)
 {
     double limit = s->sim->def.speed_limit, cfl;
-    const char *key = name_cfl(s, &cfl), *wanted = "";
+    const char *key = name_cfl(s, &cfl);
+    char remedy[240] = "";
     if (limit <= 0) {
-        wanted = ", or a speed_limit, where liquid is meant to be that fast";
         /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
         const int64_t few = 20 + s->particles.count/200;
         if (s->info.speed_max < TOBI_SPEED_LIMIT && s->info.capped <= few) return TOBI_OK;
         limit = fmin(1.4*tobi_system_speed_scale(s), TOBI_SPEED_LIMIT);
     }
     if (s->info.speed_max < limit) return TOBI_OK;
+    name_remedy(s, limit, remedy);
     for (int64_t i = 0; i < s->particles.count; i++) {
         tobi_float4 v = s->particles.velocity[i];
         tobi_double3 x = s->particles.position[i];
@@ -263,11 +284,11 @@ static tobi_status check_runaway(const tobi_system *s, tobi_error *err)
                          "help%s",
                          s->sim->time, (long long)s->sim->step, (long long)s->particles.id[i],
                          x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], speed,
-                         limit, key, cfl, wanted);
+                         limit, key, cfl, remedy);
     }
     return tobi_fail(err, TOBI_DIVERGED,
                      "the simulation diverged at t = %.9g s: a speed reached %g m/s; a %s smaller than %g "
-                     "may help%s", s->sim->time, s->info.speed_max, key, cfl, wanted);
+                     "may help%s", s->sim->time, s->info.speed_max, key, cfl, remedy);
 }
 
 static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)

@@ -15,8 +15,8 @@
 
 #define D 0.01
 
-/* A column 0.1 m wide and 0.2 m high, in a tank 0.6 m long. */
-static tobi_world *make_tank(const char *method)
+/* A column 0.2 m high, m wide as given, in a tank 0.6 m long. */
+static tobi_world *make_tank(const char *method, double width)
 {
     tobi_error err;
     tobi_world *world;
@@ -30,7 +30,7 @@ static tobi_world *make_tank(const char *method)
     assert_int_equal(tobi_world_create(&w, NULL, &world, &err), TOBI_OK);
     tobi_fluid_def f = tobi_default_fluid_def();
     tobi_fill_def fill = tobi_default_fill_def();
-    fill.box_max[0] = 0.1; fill.box_max[1] = 0.2;
+    fill.box_max[0] = width; fill.box_max[1] = 0.2;
     assert_int_equal(tobi_world_add_fluid(world, &f, &fill, 1, &err), TOBI_OK);
     return world;
 }
@@ -81,7 +81,8 @@ static void a_gate_is_taken_away(void **state)
     for (int k = 0; k < 3; k++) {
         tobi_error err;
         tobi_body_info info;
-        tobi_world *dam = make_tank(methods[k]), *world = make_tank(methods[k]);
+        tobi_world *dam = make_tank(methods[k], 0.1);
+        tobi_world *world = make_tank(methods[k], 0.1);
         const tobi_body_def gate = make_gate(0.1, 0);
         assert_int_equal(tobi_world_add_body(world, &gate, &err), TOBI_OK);
         advance(world, 0.095);
@@ -111,7 +112,7 @@ static void a_body_comes_back(void **state)
     (void)state;
     tobi_error err;
     tobi_motion *motion;
-    tobi_world *world = make_tank("dfsph");
+    tobi_world *world = make_tank("dfsph", 0.1);
     tobi_body_def gate = make_gate(0.02, 0.1);
     assert_int_equal(tobi_motion_translation((double[3]){ 1, 0, 0 }, &motion, &err), TOBI_OK);
     gate.motion = tobi_motion_positions;
@@ -132,6 +133,29 @@ static void a_body_comes_back(void **state)
     tobi_motion_free(motion);
 }
 
+/* A thick body, or a vessel's walls, in liquid at once: dfsph finds room for what it pushes out; where a run
+   ends instead, it says why. */
+static void a_thick_body_comes_back_into_water(void **state)
+{
+    (void)state;
+    static const char *const methods[] = { "dfsph", "isph", "wcsph" };
+    for (int k = 0; k < 3; k++) {
+        tobi_error err = { 0 };
+        tobi_world *world = make_tank(methods[k], 0.6);
+        tobi_body_def b = make_gate(0.05, 0.15);
+        b.name = "block";
+        b.box_min[0] = 0.3; b.box_max[0] = 0.4; b.box_min[1] = 0.05;
+        assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_OK);
+        const tobi_status status = tobi_world_advance(world, 0.2, NULL, &err);
+        print_message("%s: %s\n", methods[k], status == TOBI_OK ? "goes on" : err.text);
+        if (k == 0) assert_int_equal(status, TOBI_OK);
+        else if (status != TOBI_OK)
+            assert_non_null(strstr(err.text, "Body 'block' has just come back, and the liquid in it was "
+                                             "pushed out at once"));
+        tobi_world_destroy(world);
+    }
+}
+
 /* A run that was stored and loaded, before, while and after the gate is absent, ends in the same bits. */
 static void a_restart_is_the_same(void **state)
 {
@@ -145,14 +169,14 @@ static void a_restart_is_the_same(void **state)
         if (moves) gate.motion = tobi_motion_positions;
         gate.motion_user = motion;
         gate.motion_rigid = 1;
-        tobi_world *world = make_tank("dfsph"), *second;
+        tobi_world *world = make_tank("dfsph", 0.1), *second;
         assert_int_equal(tobi_world_add_body(world, &gate, &err), TOBI_OK);
         for (int k = 0; k < 3; k++) {
             char path[64];
             snprintf(path, sizeof path, "absence_%d.h5", (int)getpid());
             advance(world, stops[k]);
             assert_int_equal(tobi_world_save(world, path, &err), TOBI_OK);
-            second = make_tank("dfsph");
+            second = make_tank("dfsph", 0.1);
             assert_int_equal(tobi_world_add_body(second, &gate, &err), TOBI_OK);
             if (tobi_world_load(second, path, &err) != TOBI_OK) fail_msg("%s", err.text);
             unlink(path);
@@ -162,7 +186,7 @@ static void a_restart_is_the_same(void **state)
         advance(world, 0.12);
         const uint64_t hash = tobi_world_hash(world);
         tobi_world_destroy(world);
-        world = make_tank("dfsph");
+        world = make_tank("dfsph", 0.1);
         assert_int_equal(tobi_world_add_body(world, &gate, &err), TOBI_OK);
         for (int k = 0; k < 3; k++) advance(world, stops[k]);
         advance(world, 0.12);
@@ -183,7 +207,7 @@ static void what_cannot_be_absent_is_refused(void **state)
 {
     (void)state;
     tobi_error err;
-    tobi_world *world = make_tank("dfsph");
+    tobi_world *world = make_tank("dfsph", 0.1);
     tobi_body_def b = make_gate(0.2, 0.1);
     refuse(world, &b, "is absent from 0.2 s until 0.1 s; the second must be later");
     b = make_gate(0.2, 0);
@@ -207,6 +231,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_gate_is_taken_away),
         cmocka_unit_test(a_body_comes_back),
+        cmocka_unit_test(a_thick_body_comes_back_into_water),
         cmocka_unit_test(a_restart_is_the_same),
         cmocka_unit_test(what_cannot_be_absent_is_refused),
     };
