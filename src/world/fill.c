@@ -225,6 +225,16 @@ static tobi_status scatter(const tobi_system *s, const tobi_region *r, const tob
                              count, points, s->sim->exec.threads, err);
 }
 
+/* A compartment's own points tell what lies in it: its box may hold other places. */
+static tobi_status list_points(const tobi_system *s, const tobi_region *r, tobi_overlap **within,
+                               tobi_error *err)
+{
+    *within = NULL;
+    if (!r->points || s->fluid_count < 2) return TOBI_OK;
+    return tobi_overlap_create((const double (*)[3])r->points, r->point_count, s->box.dimension,
+                               s->smoothing.spacing, within, err);
+}
+
 /* A fluid that starts inside an earlier one takes its place: particles in the region are its own then, on the
    lattice that they have, and none is added near them. *taken: all places so far, NULL: none was met. */
 static tobi_status take_over(tobi_system *s, const tobi_region *r, const tobi_bvh *tree, tobi_overlap **taken,
@@ -232,7 +242,9 @@ static tobi_status take_over(tobi_system *s, const tobi_region *r, const tobi_bv
 {
     const tobi_particles *p = &s->particles;
     int64_t met = 0;
+    tobi_overlap *within;
     *taken = NULL;
+    TOBI_TRY(list_points(s, r, &within, err));
     for (int64_t i = 0; i < p->count && s->fluid_count > 1; i++) {
         const double at[3] = { p->position[i].x, p->position[i].y, p->position[i].z };
         double x[3];
@@ -241,11 +253,15 @@ static tobi_status take_over(tobi_system *s, const tobi_region *r, const tobi_bv
             x[a] = at[a] + s->box.lower[a];
             if (a < s->box.dimension) out |= x[a] < r->lower[a] || x[a] > r->upper[a];
         }
-        if (out || p->fluid[i] == r->owner || !inside_region(r, tree, x, s->box.dimension)) continue;
+        if (out || p->fluid[i] == r->owner) continue;
+        if (within ? !tobi_overlap_meets(within, x) : !inside_region(r, tree, x, s->box.dimension)) continue;
         give(s, r, i, at);
         met++;
     }
-    return met > 0 ? tobi_overlap_create(s, s->smoothing.spacing, taken, err) : TOBI_OK;
+    tobi_overlap_free(within);
+    if (met == 0) return TOBI_OK;
+    return tobi_overlap_create((const double (*)[3])p->position, p->count, s->box.dimension,
+                               s->smoothing.spacing, taken, err);
 }
 
 /* Places the points of a region and keeps those in the domain, outside of bodies and before planes. */

@@ -1,6 +1,7 @@
-/* The particles of solids in a table by cell. A fluid's particle lies in a solid where one of the solid's is
-   nearer than NEAR spacings, the mean of both: inside a lattice some always is, outside the next layer of the
-   same lattice is not. Drawback: between scattered particles (seeding blue-noise) a hole may be found. */
+/* Places in a table by cell: particles of solids, of fluids, points of a region. A fluid's particle lies in a
+   solid where one of the solid's is nearer than NEAR spacings, the mean of both: inside a lattice some always
+   is, outside the next layer of the same lattice is not. Drawback: between scattered particles (seeding
+   blue-noise) a hole may be found. */
 #include "world/overlap.h"
 #include "base/error.h"
 #include "world/world.h"
@@ -11,7 +12,8 @@
 static const double NEAR = 0.9, THIN = 2;
 
 struct tobi_overlap {
-    const tobi_system *solids;
+    const double (*at)[3];
+    int dimension;
     double reach;              /* m, and the width of a cell                                        */
     int64_t mask;              /* buckets less one                                                  */
     int32_t *head, *next;      /* the last particle of a bucket, and the one before; -1 = none      */
@@ -27,17 +29,15 @@ static int64_t find_bucket(const tobi_overlap *o, const int64_t cell[3])
 static void find_cell(const tobi_overlap *o, const double *x, int64_t cell[3])
 {
     for (int a = 0; a < 3; a++)
-        cell[a] = a < o->solids->box.dimension ? (int64_t)floor(x[a]/o->reach) : 0;
+        cell[a] = a < o->dimension ? (int64_t)floor(x[a]/o->reach) : 0;
 }
 
-tobi_status tobi_overlap_create(const tobi_system *solids, double spacing, tobi_overlap **out,
-                                tobi_error *err)
+tobi_status tobi_overlap_create(const double (*at)[3], int64_t n, int dimension, double between,
+                                tobi_overlap **out, tobi_error *err)
 {
-    const int64_t n = solids->particles.count;
     tobi_overlap *o = *out = calloc(1, sizeof *o);
-    if (!o) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the places of solids");
-    const double between = 0.5*(solids->smoothing.spacing + spacing);
-    *o = (tobi_overlap){ .solids = solids, .reach = NEAR*between, .mask = 1 };
+    if (!o) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the places of particles");
+    *o = (tobi_overlap){ .at = at, .dimension = dimension, .reach = NEAR*between, .mask = 1 };
     while (o->mask < n) o->mask *= 2;
     o->head = malloc((size_t)o->mask*sizeof *o->head);
     o->next = malloc((size_t)(n + 1)*sizeof *o->next);
@@ -50,7 +50,7 @@ tobi_status tobi_overlap_create(const tobi_system *solids, double spacing, tobi_
     o->mask--;
     for (int64_t i = 0; i < n; i++) {
         int64_t cell[3];
-        find_cell(o, &solids->particles.position[i].x, cell);
+        find_cell(o, at[i], cell);
         const int64_t bucket = find_bucket(o, cell);
         o->next[i] = o->head[bucket];
         o->head[bucket] = (int32_t)i;
@@ -61,9 +61,9 @@ tobi_status tobi_overlap_create(const tobi_system *solids, double spacing, tobi_
 static int meets_bucket(const tobi_overlap *o, int64_t bucket, const double x[3])
 {
     for (int32_t i = o->head[bucket]; i >= 0; i = o->next[i]) {
-        const double *at = &o->solids->particles.position[i].x;
+        const double *at = o->at[i];
         double square = 0;
-        for (int a = 0; a < o->solids->box.dimension; a++) square += (at[a] - x[a])*(at[a] - x[a]);
+        for (int a = 0; a < o->dimension; a++) square += (at[a] - x[a])*(at[a] - x[a]);
         if (square < o->reach*o->reach) return 1;
     }
     return 0;
@@ -73,7 +73,7 @@ int tobi_overlap_meets(const tobi_overlap *o, const double x[3])
 {
     int64_t middle[3];
     if (!o) return 0;
-    const int deep = o->solids->box.dimension == 3;
+    const int deep = o->dimension == 3;
     find_cell(o, x, middle);
     for (int z = -deep; z <= deep; z++)
         for (int y = -1; y <= 1; y++)

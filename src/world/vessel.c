@@ -3,6 +3,7 @@
    rims are known to a cell, and a fine scene has many cells. */
 #include "world/vessel.h"
 #include "base/error.h"
+#include "world/overlap.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +12,8 @@
 /* What is known of a cell: free of the body; no wall to the next one along x, y, z; reached from outside. */
 enum { FREE = 1, LINK = 2, OUTSIDE = 16 };
 enum { HALVINGS = 30 };
+/* Of a cell: nearer to a wall than that is on it. */
+static const double ON_SURFACE = 1e-6;
 static const double CELLS_MOST = 4e8;
 
 /* Coordinates are those of the box: from the domain's lower corner. */
@@ -53,6 +56,14 @@ static double height(const flood *f, const double x[3])
     return h;
 }
 
+/* Inside of the walls, or on their surface, which rounding may put on either side: a cell there belongs to
+   nobody, or those along a wall's outside would be a compartment. */
+static int is_wall(const flood *f, const double x[3])
+{
+    tobi_bvh_hit hit;
+    return tobi_bvh_inside(f->b->bvh, x) || tobi_bvh_closest(f->b->bvh, x, ON_SURFACE*f->d, &hit);
+}
+
 static void mark_range(const void *view, int64_t begin, int64_t end)
 {
     const flood *f = view;
@@ -61,7 +72,7 @@ static void mark_range(const void *view, int64_t begin, int64_t end)
         int64_t at[3];
         place(f, c, x);
         split(f, c, at);
-        if (tobi_bvh_inside(f->b->bvh, x)) continue;
+        if (is_wall(f, x)) continue;
         f->mark[c] = FREE;
         for (int a = 0; a < f->dimension; a++) {
             memcpy(next, x, sizeof next);
@@ -372,11 +383,12 @@ static tobi_status place_points(const flood *f, int label, tobi_region *r, const
     return TOBI_OK;
 }
 
-/* Whether a region that was there before has a place in it. */
-static int holds(const tobi_region *r, const double x[3], int dimension)
+/* Whether a region that was there before has a place in it. points: a table of those of a compartment. */
+static int holds(const tobi_region *r, const tobi_overlap *points, const double x[3], int dimension)
 {
     double square = 0;
-    if (r->vessel[0] || r->points || r->shape.triangle_count) return 0;
+    if (points) return tobi_overlap_meets(points, x);
+    if (r->vessel[0] || r->shape.triangle_count) return 0;
     for (int a = 0; a < dimension; a++) {
         const double from_middle = x[a] - 0.5*(r->lower[a] + r->upper[a]);
         if (x[a] <= r->lower[a] || x[a] >= r->upper[a]) return 0;
@@ -394,22 +406,42 @@ static const char *name_owner(const tobi_world *w, const tobi_region *r, char te
     return text;
 }
 
-static tobi_status check_overlap(const flood *f, int label, const tobi_world *w, const tobi_region *r,
-                                 const char *whose, tobi_error *err)
+/* The first place of a compartment that another region has. */
+static tobi_status find_shared(const flood *f, int label, const tobi_region *other, const double lower[3],
+                               double x[3], int *found, tobi_error *err)
 {
-    const double *lower = w->system[0].box.lower;
-    for (int64_t c = 0; c < f->cells; c++) {
-        double x[3];
-        char text[160];
+    tobi_overlap *points = NULL;
+    *found = 0;
+    if (other->points)
+        TOBI_TRY(tobi_overlap_create((const double (*)[3])other->points, other->point_count, f->dimension,
+                                     f->d, &points, err));
+    for (int64_t c = 0; c < f->cells && !*found; c++) {
         if (f->label[c] != label) continue;
         place(f, c, x);
         for (int a = 0; a < f->dimension; a++) x[a] += lower[a];
-        for (int k = 0; k < w->region_count; k++)
-            if (w->regions[k].system == r->system && holds(&w->regions[k], x, f->dimension))
-                return tobi_fail(err, TOBI_INVALID, "%s: what fill[%d] fills of vessel '%s' overlaps another "
-                                 "region, fill[%d] of %s, at (%.4g, %.4g, %.4g) m: leave the vessel out of "
-                                 "that one", whose, r->number, f->b->name, w->regions[k].number,
-                                 name_owner(w, &w->regions[k], text), x[0], x[1], x[2]);
+        *found = holds(other, points, x, f->dimension);
+    }
+    tobi_overlap_free(points);
+    return TOBI_OK;
+}
+
+/* Of two fluids the later one takes the place; solids, and regions of one fluid, may not share one. */
+static tobi_status check_overlap(const flood *f, int label, const tobi_world *w, const tobi_region *r,
+                                 const char *whose, tobi_error *err)
+{
+    for (int k = 0; k < w->region_count; k++) {
+        const tobi_region *other = &w->regions[k];
+        double x[3];
+        char text[160];
+        int found;
+        if (other->system != r->system) continue;
+        if (w->system[r->system].solid_count == 0 && other->owner != r->owner) continue;
+        TOBI_TRY(find_shared(f, label, other, w->system[0].box.lower, x, &found, err));
+        if (found)
+            return tobi_fail(err, TOBI_INVALID, "%s: what fill[%d] fills of vessel '%s' overlaps another "
+                             "region, fill[%d] of %s, at (%.4g, %.4g, %.4g) m: leave the vessel out of that "
+                             "one", whose, r->number, f->b->name, other->number, name_owner(w, other, text),
+                             x[0], x[1], x[2]);
     }
     return TOBI_OK;
 }
@@ -446,26 +478,30 @@ static tobi_status find_vessel(const tobi_world *w, const tobi_region *r, const 
     return TOBI_OK;
 }
 
-/* Appends a copy of a region that waits. */
-static tobi_region *add_region(tobi_world *w, const tobi_region *of)
+/* Puts a copy of a region that waits before another: regions are filled in the order of their fluids. */
+static tobi_region *add_region(tobi_world *w, const tobi_region *of, int before)
 {
-    tobi_region copy = *of, *more = realloc(w->regions, (size_t)(w->region_count + 2)*sizeof *more);
+    const tobi_region copy = *of;
+    tobi_region *more = realloc(w->regions, (size_t)(w->region_count + 2)*sizeof *more);
     if (!more) return NULL;
     w->regions = more;
-    more[w->region_count] = copy;
-    return &more[w->region_count++];
+    memmove(&more[before + 1], &more[before], (size_t)(w->region_count - before)*sizeof *more);
+    w->region_count++;
+    more[before] = copy;
+    return &more[before];
 }
 
-/* The regions of the compartments that are asked for. */
-static tobi_status place_all(const flood *f, int wanted, tobi_world *w, int number, tobi_error *err)
+/* The regions of the compartments that are asked for; *next: the number behind them. */
+static tobi_status place_all(const flood *f, int wanted, tobi_world *w, int *next, tobi_error *err)
 {
+    const int number = (*next)++;
     w->regions[number].in_vessel = 1;
     const tobi_region r = w->regions[number];
     char text[160];
     int64_t points = 0;
     for (int k = 1, taken = 0; k <= f->compartments; k++) {
         if (wanted > 0 && k != wanted) continue;
-        tobi_region *to = taken++ == 0 ? &w->regions[number] : add_region(w, &r);
+        tobi_region *to = taken++ == 0 ? &w->regions[number] : add_region(w, &r, (*next)++);
         if (!to) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the compartments of a vessel");
         TOBI_TRY(place_points(f, k, to, w->system[0].box.lower, err));
         points += to->points ? to->point_count : 1;
@@ -473,9 +509,10 @@ static tobi_status place_all(const flood *f, int wanted, tobi_world *w, int numb
     return points > 0 ? TOBI_OK : find_nothing(f, &r, name_owner(w, &r, text), err);
 }
 
-static tobi_status resolve(tobi_world *w, int number, tobi_error *err)
+/* *number: of a region that waits; then that behind its compartments. */
+static tobi_status resolve(tobi_world *w, int *number, tobi_error *err)
 {
-    const tobi_region r = w->regions[number];
+    const tobi_region r = w->regions[*number];
     const double *corner = w->system[0].box.lower;
     char text[160];
     const char *whose = name_owner(w, &r, text);
@@ -494,8 +531,9 @@ static tobi_status resolve(tobi_world *w, int number, tobi_error *err)
 
 tobi_status tobi_vessel_resolve(tobi_world *w, tobi_error *err)
 {
-    const int before = w->region_count;
-    for (int k = 0; k < before; k++)
-        if (w->regions[k].vessel[0]) TOBI_TRY(resolve(w, k, err));
+    for (int k = 0; k < w->region_count;) {
+        if (w->regions[k].vessel[0]) TOBI_TRY(resolve(w, &k, err));
+        else k++;
+    }
     return TOBI_OK;
 }

@@ -239,8 +239,11 @@ static tobi_status fill_systems(tobi_world *w, tobi_error *err)
     tobi_status status = TOBI_OK;
     for (int k = w->system_count - 1; k >= 0 && status == TOBI_OK; k--) {
         status = tobi_world_fill_system(w, &w->system[k], err);
-        if (status == TOBI_OK && soft->solids == &w->system[k])
-            status = tobi_overlap_create(soft->solids, w->system[0].smoothing.spacing, &soft->start, err);
+        const tobi_system *s = &w->system[k];
+        const double between = 0.5*(s->smoothing.spacing + w->system[0].smoothing.spacing);
+        if (status == TOBI_OK && soft->solids == s)
+            status = tobi_overlap_create((const double (*)[3])s->particles.position, s->particles.count,
+                                         s->box.dimension, between, &soft->start, err);
     }
     tobi_overlap_free(soft->start);
     soft->start = NULL;

@@ -71,6 +71,20 @@ static void write_mesh(const char *name, int holed)
     fclose(f);
 }
 
+/* Two such cubes side by side. */
+static void write_two(const char *name)
+{
+    FILE *f = fopen(name, "w");
+    assert_non_null(f);
+    for (int k = 0; k < 16; k++)
+        fprintf(f, "v %g %g %g\n", corner[k%8][0] + (k < 8 ? 0 : 1.5), corner[k%8][1], corner[k%8][2]);
+    for (int t = 0; t < 20; t++) {
+        const int first = t < 10 ? 1 : 9;
+        fprintf(f, "f %d %d %d\n", side[t%10][0] + first, side[t%10][1] + first, side[t%10][2] + first);
+    }
+    fclose(f);
+}
+
 /* resolved.json, from which runs are resumed and drawn, is a scene again, and the same. */
 static void read_again(const tobi_scene *scene)
 {
@@ -164,8 +178,78 @@ static void test_solid_inside(void **state)
     tobi_world_destroy(w);
 }
 
+/* Walls whose outside lies on cells of the search: no liquid begins in them. */
+static void test_walls_on_cells(void **state)
+{
+    (void)state;
+    tobi_scene *scene;
+    tobi_world *w;
+    tobi_error err = { 0 };
+    static const char text[] =
+        "{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [0.6, 0.4] }, \"spacing\": 0.01, "
+        "\"end_time\": 1, \"fluids\": [ { \"name\": \"water\", "
+        "\"fill\": [ { \"vessel\": \"tank\", \"level\": 0.2 } ] } ], "
+        "\"bodies\": [ { \"name\": \"tank\", \"vessel\": true, "
+        "\"box\": { \"min\": [0.1, 0.05], \"max\": [0.4, 0.3] } } ] }";
+    assert_int_equal(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, &err), TOBI_OK);
+    assert_int_equal(tobi_scene_build(scene, &w, &err), TOBI_OK);
+    if (tobi_world_start(w, &err) != TOBI_OK) fail_msg("%s", err.text);
+    assert_int_equal(w->system[0].particles.count, 30*15);
+    tobi_world_destroy(w);
+    tobi_scene_free(scene);
+}
+
+/* Particles of two fluids; `second` is the fill of the later one. */
+static void fill_two(const char *bodies, const char *first, const char *second, int64_t count[2])
+{
+    tobi_world *w;
+    tobi_error err = { 0 };
+    char fills[1000];
+    snprintf(fills, sizeof fills, "%s ] }, { \"name\": \"oil\", \"fill\": [ %s", first, second);
+    if (start(bodies, fills, "", &w, &err) != TOBI_OK) fail_msg("%s", err.text);
+    const tobi_particles *p = &w->system[0].particles;
+    count[0] = count[1] = 0;
+    for (int64_t i = 0; i < p->count; i++) count[p->fluid[i]]++;
+    tobi_world_destroy(w);
+}
+
+/* A later fluid takes the place of an earlier one in vessels too: boxes and vessels, in each order. */
+static void test_later_fluids(void **state)
+{
+    (void)state;
+    static const char small[] = "{ \"box\": { \"min\": [0.2, 0.2, 0.2], \"max\": [0.4, 0.4, 0.4] } }";
+    static const char low[] = "{ \"vessel\": \"cup\", \"level\": 0.2 }";
+    static const char deep[] = "{ \"vessel\": \"bowl\", \"level\": 0.3 }";
+    char bowl[400], two[700];
+    int64_t n[2];
+    fill_two(cup, HALF, small, n);
+    assert_true(n[0] == 500 - 8 && n[1] == 8);
+    fill_two(cup, HALF, low, n);
+    assert_true(n[0] == 300 && n[1] == 200);
+    /* a cup of oil in a pool, whose water is left in none of it */
+    fill_two(cup, "{ \"box\": { \"min\": [-1, -1, -1], \"max\": [2.5, 2, 0.5] } }", HALF, n);
+    assert_true(n[0] == 35*30*15 - 14*14*7 && n[1] == 500);
+    /* a round bowl: what lies in its box but not in it stays */
+    snprintf(bowl, sizeof bowl, "{ \"name\": \"bowl\", \"vessel\": true, \"sphere\": { \"centre\": "
+             "[0, 0, 0], \"radius\": 0.75 } }");
+    fill_two(bowl, "{ \"box\": { \"min\": [-1, -1, -1], \"max\": [2.5, 2, 0] } }",
+             "{ \"vessel\": \"bowl\", \"level\": 0 }", n);
+    assert_in_range(n[1], 840, 928);
+    assert_in_range(n[0], 35*30*10 - 1850, 35*30*10 - 1700);   /* less 2/3 pi 0.95^3/0.001 = 1796 */
+    fill_two(bowl, deep, "{ \"vessel\": \"bowl\", \"level\": 0 }", n);
+    assert_in_range(n[1], 840, 928);
+    const int64_t alone = fill(bowl, deep);          /* and some that had room along the wall */
+    assert_in_range(n[0] + n[1], alone, alone + alone/50);
+    /* every compartment comes before what is written after it */
+    snprintf(two, sizeof two, "{ \"name\": \"cup\", \"vessel\": true, \"mesh\": \"%s/two.obj\", "
+             "\"translation\": [-0.3, 0, 0] }", path);
+    fill_two(two, HALF, "{ \"box\": { \"min\": [1.5, 0.2, 0.2], \"max\": [1.7, 0.4, 0.4] } }", n);
+    assert_true(n[0] == 1000 - 8 && n[1] == 8);
+}
+
 static void test_mistakes(void **state)
 {
+    char ball[300];
     (void)state;
     refuse(cup, "{ \"vessel\": \"cup\", \"level\": 1.4 }", "",
            "the level of fill[0] is 1.4 m, and vessel 'cup' holds liquid up to");
@@ -179,6 +263,10 @@ static void test_mistakes(void **state)
     refuse(cup, HALF, "\"gravity\": [0, 0, 0],", "without gravity nothing is up");
     refuse(cup, HALF ", { \"box\": { \"min\": [0.2, 0.2, 0.2], \"max\": [0.4, 0.4, 0.4] } }", "",
            "overlaps another region, fill[1] of fluid 'water', at (");
+    snprintf(ball, sizeof ball, "{ \"name\": \"cup\", \"vessel\": true, \"sphere\": { \"centre\": [0, 0, 0], "
+             "\"radius\": 0.75 } }");
+    refuse(ball, "{ \"vessel\": \"cup\", \"level\": 0.5 }, { \"vessel\": \"cup\", \"level\": 0.2 }", "",
+           "overlaps another region, fill[0] of fluid 'water', at (");
     refuse(cup, "{ \"vessel\": \"cup\", \"level\": 0.5, \"mesh\": \"cup.obj\" }", "",
            "must have one of box, sphere, mesh and vessel, it has several");
 }
@@ -212,13 +300,17 @@ int main(void)
     snprintf(cup, sizeof cup, "{ \"name\": \"cup\", \"vessel\": true, \"mesh\": \"%s\" }", file);
     snprintf(file, sizeof file, "%s/holed.obj", path);
     write_mesh(file, 1);
+    snprintf(file, sizeof file, "%s/two.obj", path);
+    write_two(file);
+    snprintf(file, sizeof file, "%s/holed.obj", path);
     snprintf(holed, sizeof holed, "{ \"name\": \"cup\", \"vessel\": true, \"mesh\": \"%s\" }", file);
     snprintf(box, sizeof box, "{ \"name\": \"box\", \"vessel\": true, \"box\": { \"min\": [0, 0, 0], "
              "\"max\": [1, 1, 1] } }");
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_walls),       cmocka_unit_test(test_levels),
         cmocka_unit_test(test_compartments), cmocka_unit_test(test_mistakes),
-        cmocka_unit_test(test_solid_inside),
+        cmocka_unit_test(test_solid_inside), cmocka_unit_test(test_walls_on_cells),
+        cmocka_unit_test(test_later_fluids),
         cmocka_unit_test(test_wrong_calls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
