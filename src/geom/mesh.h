@@ -59,6 +59,9 @@ tobi_status tobi_mesh_orient(tobi_mesh *mesh, const char *name, tobi_error *err)
    for. */
 tobi_status tobi_mesh_orient_open(tobi_mesh *mesh, const char *name, tobi_error *err);
 
+/* The same as the first, of walls: that they have a hollow is no news. */
+tobi_status tobi_mesh_orient_vessel(tobi_mesh *mesh, const char *name, tobi_error *err);
+
 /* Adds a line to mesh->notes, as far as there is room. */
 void tobi_mesh_note(tobi_mesh *mesh, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -17,6 +17,8 @@
 #define OVERLAP_SEEN 1e-3        /* of the volume: less is left alone                      */
 enum { SAMPLES = 9, LINES = 200 };
 
+enum surface { CLOSED, OPEN, VESSEL };
+
 typedef struct shell_set {
     int64_t count;
     int32_t *of_triangle;        /* shell of each triangle                  */
@@ -34,7 +36,7 @@ typedef struct orient_work {
     shell_set shells;
     tobi_holes holes;
     const char *name;
-    int keep_open;               /* 1: patches only tell the outside                   */
+    enum surface what;           /* OPEN: patches only tell the outside                */
 } orient_work;
 
 static void free_work(orient_work *w)
@@ -52,7 +54,7 @@ static void free_work(orient_work *w)
 static tobi_status allocate_work(orient_work *w, int64_t n)
 {
     orient_work fresh = {.holes = w->holes, .turned = w->turned, .name = w->name,
-                         .keep_open = w->keep_open};
+                         .what = w->what};
     free_work(w);
     *w = fresh;
     w->opposite = malloc((size_t)n*sizeof *w->opposite);
@@ -249,7 +251,7 @@ static tobi_status turn_shells(tobi_mesh *mesh, orient_work *w, tobi_error *err)
         for (int64_t j = s->start[i]; j < s->start[i + 1]; j++) turn_triangle(mesh->triangles[s->order[j]]);
     }
     free(depth);
-    if (hollow)
+    if (hollow && w->what != VESSEL)                   /* it is there to be filled */
         tobi_mesh_note(mesh, "%lld of %lld shells lie inside another one and are hollows",
                        (long long)hollow, (long long)s->count);
     if (turned)
@@ -348,7 +350,7 @@ static tobi_status orient_mesh(tobi_mesh *mesh, orient_work *w, tobi_error *err)
     if (report.open || report.crowded) return fail_crowded(mesh, w->name, &report, err);
     TOBI_TRY(measure_shells(mesh, &w->shells));
     TOBI_TRY(turn_shells(mesh, w, err));
-    if (w->keep_open) {
+    if (w->what == OPEN) {
         if (patched) mesh->triangle_count = w->holes.first;
         return TOBI_OK;
     }
@@ -356,11 +358,11 @@ static tobi_status orient_mesh(tobi_mesh *mesh, orient_work *w, tobi_error *err)
     return find_overlaps(mesh, err);
 }
 
-static tobi_status orient(tobi_mesh *mesh, const char *name, int keep_open, tobi_error *err)
+static tobi_status orient(tobi_mesh *mesh, const char *name, enum surface what, tobi_error *err)
 {
     if (!mesh->triangle_count)
         return tobi_fail(err, TOBI_INVALID, "mesh '%s': no triangles; a closed surface is needed", name);
-    orient_work w = {.name = name, .keep_open = keep_open};
+    orient_work w = {.name = name, .what = what};
     tobi_status status = allocate_work(&w, mesh->triangle_count);
     if (status == TOBI_OK) status = orient_mesh(mesh, &w, err);
     if (status == TOBI_NO_MEMORY)
@@ -372,10 +374,15 @@ static tobi_status orient(tobi_mesh *mesh, const char *name, int keep_open, tobi
 
 tobi_status tobi_mesh_orient(tobi_mesh *mesh, const char *name, tobi_error *err)
 {
-    return orient(mesh, name, 0, err);
+    return orient(mesh, name, CLOSED, err);
 }
 
 tobi_status tobi_mesh_orient_open(tobi_mesh *mesh, const char *name, tobi_error *err)
 {
-    return orient(mesh, name, 1, err);
+    return orient(mesh, name, OPEN, err);
+}
+
+tobi_status tobi_mesh_orient_vessel(tobi_mesh *mesh, const char *name, tobi_error *err)
+{
+    return orient(mesh, name, VESSEL, err);
 }

@@ -165,7 +165,7 @@ tobi_status tobi_mesh_make_vessel(tobi_mesh *mesh, double thickness, double usua
 {
     int walled = 0;
     if (!(thickness > 0)) TOBI_TRY(has_walls(mesh, dimension, name, &walled, err));
-    if (walled) return tobi_mesh_orient(mesh, name, err);
+    if (walled) return tobi_mesh_orient_vessel(mesh, name, err);
     tobi_mesh out = { 0 };
     const double t = thickness > 0 ? thickness : usual;
     TOBI_TRY(tobi_mesh_orient_open(mesh, name, err));
@@ -175,7 +175,7 @@ tobi_status tobi_mesh_make_vessel(tobi_mesh *mesh, double thickness, double usua
     }
     memcpy(out.notes, mesh->notes, sizeof out.notes);
     tobi_mesh_note(&out, "it has no walls of its own: they lie outside of it, %.4g m thick", t);
-    const tobi_status status = tobi_mesh_orient(&out, name, err);
+    const tobi_status status = tobi_mesh_orient_vessel(&out, name, err);
     tobi_mesh_free(mesh);
     *mesh = out;
     return status;

@@ -2,9 +2,11 @@
    of at it. The scene says so, but its author seldom means it. Drawback: motions that jump later are not
    found. */
 #include "base/error.h"
+#include "geom/vec3.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* Of the speed of a fall from the liquid's height; slower starts press less than the liquid at rest. */
 static const double JERK = 0.05;
@@ -13,15 +15,35 @@ static const double SOON = 1e-4;
 /* Spacings between liquid and wall that count as a gap, not as a place of its own. */
 static const double GAP_LEAST = 0.6, GAP_MOST = 4;
 
+/* m/s: the fastest that a body's surface goes into liquid or out of it, by the middles of its triangles: what
+   slides along itself, as a round vessel that turns about its axis, presses nothing. */
+static double find_normal_speed(const tobi_body *b)
+{
+    double most = 0;
+    for (int64_t t = 0; t < b->mesh.triangle_count; t++) {
+        const int32_t *v = b->mesh.triangles[t];
+        double p[3], q[3], mean[3], normal[3];
+        vec3_sub(p, b->vertex[v[1]], b->vertex[v[0]]);
+        vec3_sub(q, b->vertex[v[2]], b->vertex[v[0]]);
+        vec3_cross(normal, p, q);
+        memcpy(mean, b->vertex_velocity[v[0]], sizeof mean);
+        for (int k = 1; k < 3; k++) vec3_add_scaled(mean, mean, 1, b->vertex_velocity[v[k]]);
+        most = fmax(most, fabs(vec3_dot(mean, normal))/3/fmax(vec3_length(normal), 1e-300));
+    }
+    return most;
+}
+
 static tobi_status note_jerk(tobi_world *w, tobi_body *b, tobi_error *err)
 {
-    double after = 0, twice = 0;
+    double after = 0, twice = 0, pressing;
     char text[240];
     TOBI_TRY(tobi_body_predict(b, 0, 2*SOON, &twice, err));
+    pressing = -find_normal_speed(b);
     TOBI_TRY(tobi_body_predict(b, 0, SOON, &after, err));
+    pressing += 2*find_normal_speed(b);
     const double speed = 2*after - twice;            /* at once: an acceleration adds to the means */
     if (b->rigid.kind != TOBI_PRESCRIBED || w->system[0].start_speed > 0) return TOBI_OK;
-    if (!(speed > fmax(JERK*sqrt(2*w->system[0].start_head), JERK*after))) return TOBI_OK;
+    if (!(pressing > fmax(JERK*sqrt(2*w->system[0].start_head), JERK*after))) return TOBI_OK;
     snprintf(text, sizeof text, "sets off at %.3g m/s: the force of the first step is an impulse over "
              "the time step; let the motion begin at rest\n", speed);
     return tobi_world_add_notes(w, "body", b->name, text, err);
