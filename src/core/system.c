@@ -127,10 +127,14 @@ static double narrow_speed(const tobi_system *s)
     return fmin(flow/hole, 10*fastest);
 }
 
+/* Spacings in a step: what moves less is at rest but for rounding, though nothing drives it. */
+static const double STILL = 1e-6;
+
 double tobi_system_speed_scale(const tobi_system *s)
 {
     double fall = opening_head(s);
     for (int a = 0; a < s->box.dimension; a++) fall += tobi_simulation_pull(s->sim, a)*s->box.size[a];
     const double brought = fmax(2*s->start_speed, narrow_speed(s));
-    return sqrt(2*fall + 8*tobi_system_capillary(s)) + s->sim->body_speed + brought;
+    const double scale = sqrt(2*fall + 8*tobi_system_capillary(s)) + s->sim->body_speed + brought;
+    return s->dt > 0 ? fmax(scale, STILL*s->smoothing.spacing/s->dt) : scale;
 }

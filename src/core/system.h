@@ -40,8 +40,8 @@ typedef struct tobi_system {
     double dt;                      /* s, of the step at hand, or of the last one            */
     int64_t step;                   /* its own steps                                         */
     double gravity[3];              /* m/s2, what particles feel, see sph/hydrostatic.h       */
-    double start_speed;             /* m/s, fastest particle or free body at the start, or point
-                                       of a swimmer since                                  */
+    double start_speed;             /* m/s, fastest particle at the start, or point of a body
+                                       since                                               */
     double start_head;              /* m2/s2, g times the height of the fluid at the start   */
     tobi_step_info info;            /* of the last step                                      */
     int64_t first_id;               /* of the world's ids; particles.id count from there     */

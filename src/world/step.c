@@ -98,27 +98,23 @@ static tobi_status choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI
     return TOBI_OK;
 }
 
-/* imposed: raised to the speed of bodies that drive the material. */
-static tobi_status predict_bodies(tobi_simulation *s, double *imposed, tobi_error *err)
+static tobi_status predict_bodies(tobi_simulation *s, tobi_error *err)
 {
     double clock = tobi_clock();
     s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++) {
-        tobi_body *b = &s->bodies[k];
-        double speed = 0;
-        tobi_body_clear_loads(b);
-        TOBI_TRY(tobi_body_predict(b, s->time, s->dt, &speed, err));
-        s->body_speed = fmax(s->body_speed, speed);
-        if (b->rigid.kind == TOBI_PRESCRIBED || b->swimmer) *imposed = fmax(*imposed, speed);
+        tobi_body_clear_loads(&s->bodies[k]);
+        TOBI_TRY(tobi_body_predict(&s->bodies[k], s->time, s->dt, &s->body_speed, err));
     }
     TOBI_TRY(tobi_constraints_close(&s->constraints, s->bodies, s->time, s->dt, err));
     tobi_stage_end(&s->stages, "motion", &clock);
     return TOBI_OK;
 }
 
-/* What bodies or another system stir stays as fast when those stop. */
-static void remember_speed(tobi_world *w, double imposed)
+/* What bodies or another system stir stays as fast when those stop: a body on a spring stops at each turn. */
+static void remember_speed(tobi_world *w)
 {
+    double imposed = w->sim.body_speed;
     for (int k = 0; k < w->system_count; k++) imposed = fmax(imposed, w->system[k].start_speed);
     for (int k = 0; k < w->system_count; k++)
         w->system[k].start_speed = fmax(w->system[k].start_speed, imposed);
@@ -301,10 +297,9 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     TOBI_TRY(choose_dt(w, max_dt, substeps, err));
     TOBI_TRY(tobi_world_drive(w, err));
     tobi_absorb_predict(w);
-    double imposed = s->wall_speed;
-    TOBI_TRY(predict_bodies(s, &imposed, err));
+    TOBI_TRY(predict_bodies(s, err));
     s->changed = 1;
-    remember_speed(w, imposed);
+    remember_speed(w);
     TOBI_TRY(step_systems(w, substeps, err));
     tobi_constraints_settle(&s->constraints, s->bodies, s->dt);
     if (s->soft.solids) s->body_speed = fmax(s->body_speed, s->soft.speed);
