@@ -101,7 +101,7 @@ static int print_time(const tobi_scene *scene, tobi_world *world, double step)
         return complain("after %d steps: %s", steps, err.text);
     if (steps < 2) return 0;
     if (step > 0 && taken < 0.5*step)
-        printf("note             the first steps are %.3g s: about %.4g steps to %g s\n", taken, end/taken,
+        printf("note             the first steps are %.3g s: about %.0f steps to %g s\n", taken, end/taken,
                end);
     if (step == 0 || taken < step) step = taken;
     duration_text(wall * end / taken, least);

@@ -121,6 +121,8 @@ typedef struct tobi_method {
     /* The longest step that a solid's material, or the sound of TOBI_LIQUIDS, allows at a speed, m/s, in s;
        NULL: only the motion tells. */
     double (*stable_dt)(const tobi_system *s, int solid, double speed);
+    /* m/s, of sound that its parameters give to liquids. NULL: they do not. */
+    double (*sound)(const tobi_system *s);
     /* Points of its solids for a liquid, into s->sim->soft; NULL: it has none. */
     tobi_status (*points)(tobi_system *s, tobi_error *err);
     /* The nodes of its grid; the caller frees them, also after a failure. NULL: it has none. */

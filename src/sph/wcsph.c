@@ -44,8 +44,9 @@ static void choose_smoothing(const void *def, int driven, int *shape, double *su
     *support = d->support > 0 ? d->support : tobi_smoothing_support(d->kernel, 2);
 }
 
-static double find_sound(const tobi_system *s, const tobi_wcsph_def *d)
+static double find_sound(const tobi_system *s)
 {
+    const tobi_wcsph_def *d = s->def;
     double least, most;
     tobi_system_densities(s, &least, &most);
     return sqrt(d->exponent*d->stiffness/least);
@@ -54,7 +55,7 @@ static double find_sound(const tobi_system *s, const tobi_wcsph_def *d)
 static double limit_dt(const tobi_system *s, int solid, double speed)
 {
     (void)solid;
-    return fmin(s->sim->def.cfl*s->smoothing.spacing/(find_sound(s, s->def) + speed), sph_gravity_dt(s));
+    return fmin(s->sim->def.cfl*s->smoothing.spacing/(find_sound(s) + speed), sph_gravity_dt(s));
 }
 
 static tobi_status create(tobi_system *s, tobi_error *err)
@@ -65,7 +66,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     m->rests = m->def.still_water;
     m->def.still_water &= !s->sim->soft.solids;   /* the solids' points know nothing of it */
-    m->sound = find_sound(s, &m->def);
+    m->sound = find_sound(s);
     m->compliance = fmax(tobi_couple_compliance(s), sph_soft_compliance(s));
     return TOBI_OK;
 }
@@ -284,6 +285,7 @@ const tobi_method tobi_wcsph = {
     .move = move,
     .finish = sph_finish,
     .stable_dt = limit_dt,
+    .sound = find_sound,
     .refresh = refresh,
     .read = sph_read,
     .derive = derive,

@@ -1,6 +1,6 @@
 /* Notes on the start of a liquid: bodies that set off at full speed, liquid that begins beside a wall instead
-   of at it. The scene says so, but its author seldom means it. Drawback: motions that jump later are not
-   found. */
+   of at it, or that its own weight compresses. The scene says so, but its author seldom means it. Drawback:
+   motions that jump later are not found. */
 #include "base/error.h"
 #include "geom/vec3.h"
 #include "world/world.h"
@@ -10,6 +10,8 @@
 
 /* Of the speed of a fall from the liquid's height; slower starts press less than the liquid at rest. */
 static const double JERK = 0.05;
+/* Of the speed of such a fall; with 3 the liquid at the bottom is 5 % too dense. */
+static const double SOUND_LEAST = 3;
 /* s, over which a motion is looked at. */
 static const double SOON = 1e-4;
 /* Spacings between liquid and wall that count as a gap, not as a place of its own. */
@@ -69,10 +71,24 @@ static tobi_status note_gap(tobi_world *w, const tobi_region *r, tobi_error *err
     return TOBI_OK;
 }
 
+/* Where sound is not much faster than a fall from the liquid's height, its weight compresses it. */
+static tobi_status note_compression(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    char text[240];
+    if (!s->method->sound || s->method->solids) return TOBI_OK;
+    const double sound = s->method->sound(s), fall = sqrt(2*s->start_head);
+    if (!(sound < SOUND_LEAST*fall)) return TOBI_OK;
+    snprintf(text, sizeof text, "its weight compresses it: sound goes through it at %.3g m/s, a fall from "
+             "its height ends at %.3g m/s; %.0f times the %s.stiffness makes sound ten times as fast\n",
+             sound, fall, pow(10*fall/sound, 2), s->method->name);
+    return tobi_world_add_notes(w, "fluid", s->fluid[0].name, text, err);
+}
+
 tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err)
 {
     if (w->system[0].fluid_count == 0) return TOBI_OK;
     for (int k = 0; k < w->sim.body_count; k++) TOBI_TRY(note_jerk(w, &w->sim.bodies[k], err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(note_gap(w, &w->regions[k], err));
-    return TOBI_OK;
+    return note_compression(w, err);
 }

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "calls.h"
+#include "scene_text.h"
 #include "sph/state.h"
 #include "sph/reference.h"
 #include "world/world.h"
@@ -171,6 +172,26 @@ static void what_turns_about_its_axis_is_not_told(void **state)
     }
 }
 
+/* Water 3 m deep by wcsph, whose sound is that of 50 kPa unless somebody says otherwise. */
+static void compression_is_told(void **state)
+{
+    (void)state;
+    for (int stiff = 0; stiff < 2; stiff++) {
+        tobi_world *world;
+        char text[500];
+        snprintf(text, sizeof text, "{ \"method\": \"wcsph\", \"dimension\": 2, \"spacing\": 0.25, "
+                 "\"domain\": { \"min\": [0, 0], \"max\": [4, 4] }, \"end_time\": 1, "
+                 "\"gravity\": [0, -9.81], \"wcsph\": { \"stiffness\": %g }, \"fluids\": [ { "
+                 "\"name\": \"water\", \"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [4, 3] } } ] } ] }",
+                 stiff ? 8.5e5 : 5e4);
+        OK(start_scene(text, &world, &err));
+        const char *words = "'water': its weight compresses it: sound goes through it at 18.7 m/s, a fall "
+                            "from its height ends at 7.67 m/s; 17 times the wcsph.stiffness";
+        assert_int_equal(count_notes(world, words), !stiff);
+        tobi_world_destroy(world);
+    }
+}
+
 static void spray_has_a_large_surface(void **state)
 {
     (void)state;
@@ -192,6 +213,7 @@ int main(void)
         cmocka_unit_test(the_level_falls_no_faster_than_the_liquid),
         cmocka_unit_test(water_in_gaps_presses),
         cmocka_unit_test(restless_starts_are_told),
+        cmocka_unit_test(compression_is_told),
         cmocka_unit_test(what_turns_about_its_axis_is_not_told),
         cmocka_unit_test(spray_has_a_large_surface),
     };
