@@ -105,6 +105,17 @@ static void check_field_of(const tobi_scene *scene, tobi_source *source, const t
                             liquids ? "liquids" : "solids");
 }
 
+/* Where a camera would stand, in views that fit the domain. The place 0 0 0 says nothing. */
+static void check_camera(tobi_source *source, const tobi_view_def *view, const tobi_place *camera)
+{
+    static const double nowhere[3] = { 0 };
+    tobi_place position = { camera, "position", 0 }, target = { camera, "look_at", 0 };
+    const tobi_place *unread = memcmp(view->position, nowhere, sizeof nowhere) != 0 ? &position
+                             : memcmp(view->look_at, nowhere, sizeof nowhere) != 0 ? &target : NULL;
+    if (view->angle > 0 || !unread) return;
+    tobi_source_mistake_at_key(source, unread, "is for a camera.angle; without one the view fits the domain");
+}
+
 /* place: of the object that has camera and picture. */
 static void check_view(const tobi_scene *scene, tobi_source *source, const tobi_view_def *view,
                        const tobi_place *place)
@@ -115,6 +126,7 @@ static void check_view(const tobi_scene *scene, tobi_source *source, const tobi_
     if (view->angle > 0 && scene->world.dimension == 3 &&
         memcmp(view->position, view->look_at, sizeof view->look_at) == 0)
         tobi_source_mistake(source, &target, "is the camera's own position");
+    check_camera(source, view, &camera);
     if (view->field) check_names(scene, source, &field, view->field);
     check_field_of(scene, source, &field_of, view->field_of);
     if (view->follow && !tobi_scene_find_body(scene, view->follow))

@@ -44,7 +44,7 @@ const tobi_param_table tobi_probe_table = {
     { .key = "camera.position", VEC3, AT(type, in position), PLACE, .unit = "m", \
       .doc = "Where the pictures of a 3-D scene are taken from, if camera.angle is given." }, \
     { .key = "camera.look_at", VEC3, AT(type, in look_at), PLACE, .unit = "m", \
-      .doc = "The point in the middle of the pictures." }, \
+      .doc = "The point in the middle of the pictures, if camera.angle is given." }, \
     { .key = "camera.angle", REAL, AT(type, in angle), RANGE(0.01, 150), \
       .unit = "degrees", .text = "fit", \
       .doc = "Vertical field of view; fit shows the whole domain from where it looks best." }, \

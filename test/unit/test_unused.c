@@ -158,10 +158,33 @@ static void test_what_is_let_be(void **state)
     free(line);
 }
 
+/* A camera without an angle stands nowhere: the view fits the domain. */
+static void test_cameras(void **state)
+{
+    (void)state;
+    static const struct { const char *output, *told; } cases[] = {
+        { "\"camera\": { \"position\": [1, 2, 3] }", "output.camera.position: is for a camera.angle" },
+        { "\"camera\": { \"look_at\": [1, 2, 3] }", "output.camera.look_at: is for a camera.angle" },
+        { "\"views\": [ { \"name\": \"v\", \"camera\": { \"position\": [1, 2, 3] } } ]",
+          "output.views[0].camera.position: is for a camera.angle; without one the view fits the domain" },
+        { "\"camera\": { \"position\": [1, 2, 3], \"angle\": 30 }", "" },
+    };
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        char world[200];
+        int unused;
+        snprintf(world, sizeof world, "\"output\": { %s },", cases[k].output);
+        const lines l = { "dfsph", world, "", "", "" };
+        char *line = first_mistake(&l, "position", &unused);
+        if (cases[k].told[0] ? !strstr(line, cases[k].told) : line[0]) fail_msg("case %zu: %s", k, line);
+        free(line);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_keys), cmocka_unit_test(test_resolved), cmocka_unit_test(test_what_is_let_be),
+        cmocka_unit_test(test_cameras),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
