@@ -54,7 +54,11 @@ static void add_axis(sweep *s, struct argp_state *state, const char *text)
         const char *end = end_of_value(at);
         if (end == at) argp_error(state, "--set %s: a value is empty", text);
         a->value = grow(a->value, (size_t)a->count + 1, sizeof *a->value);
-        a->value[a->count++] = strndup(at, (size_t)(end - at));
+        char *value = a->value[a->count] = strndup(at, (size_t)(end - at));
+        for (int k = 0; k < a->count; k++)
+            if (strcmp(a->value[k], value) == 0)
+                argp_error(state, "--set %s: %s is there twice", text, value);
+        a->count++;
         if (!*end) break;
         at = end + 1;
     }
@@ -139,7 +143,9 @@ static int check_runs(const sweep *s)
         for (int k = 0; k < s->axis_count; k++)
             overrides_add(&set, "%s=%s", s->axes[k].path, sweep_value(s, run, k));
         tobi_scene *scene = load_scene(s->scene, &set);
-        code = scene ? 0 : complain("run %d of %d cannot be; nothing has been run", run, s->runs);
+        char *name = sweep_name(s, run);
+        code = scene ? 0 : complain("run %d of %d, %s, cannot be; nothing has been run", run, s->runs, name);
+        free(name);
         tobi_scene_free(scene);
     }
     return code;
@@ -195,7 +201,9 @@ static int make_folders(const char *path)
         p[1] = kept;
     }
     free(copy);
-    return failed ? complain("cannot make %s: %s", path, strerror(errno)) : 0;
+    struct stat is;
+    if (!failed && stat(path, &is) == 0 && !S_ISDIR(is.st_mode)) failed = 1, errno = ENOTDIR;
+    return failed ? complain("cannot make the directory %s: %s", path, strerror(errno)) : 0;
 }
 
 /* Without --out: out/SCENE_sweep, by the scene's own name. */

@@ -67,14 +67,18 @@ expect 2 "--until: '1e9' is not a number from 1e-06 to 100000 s" new hose --unti
 expect 2 "which SCENE?" sweep
 expect 2 "--set wants PATH=A,B" sweep x --set spacing
 expect 2 "a value is empty" sweep x --set spacing=1,,2
+expect 2 "--set spacing=1,2,1: 1 is there twice" sweep x --set spacing=1,2,1
 expect 2 "--set spacing is given twice" sweep x --set spacing=1 --set spacing=2
 expect 2 "--jobs: '0' is not a number from 1 to 256" sweep x --jobs 0
 flat=dam_break_2d_PS0d02_dfsph
 expect 1 "a sweep varies something" sweep $flat
 expect 1 'did you mean "spacing"?' sweep $flat --set spacng=1,2
+expect 1 "run 1 of 2, method=mlsmpm, cannot be" sweep $flat --set method=dfsph,mlsmpm
 check "a wrong sweep runs nothing" test ! -e out/${flat}_sweep
 expect 1 "allowed are 10000" sweep $flat --set spacing=0.02,0.03 $(for k in a b c d e f g h i j k l m n; do
     echo --set "x.$k=1,2"; done)
+touch file
+expect 1 "cannot make the directory file: Not a directory" sweep $flat --set spacing=0.02,0.025 --out file
 expect 1 "--only 9: the runs have numbers from 0 to 3" sweep $flat --set spacing=0.02,0.025 --set method=dfsph,wcsph --only 9
 sweep=(sweep $flat --set spacing=0.02,0.025 --set method=dfsph,wcsph --until 0.02 --out s)
 expect 0 "" "${sweep[@]}" --slurm
