@@ -18,7 +18,8 @@
 
 #define S(m) IN(tobi_tank_setting, m)
 static const tobi_old_key setting_keys[] = {
-    { K("particle_spacing"), S(spacing), POSITIVE, UNIT("m"), BECOMES("spacing"), NEEDED, SAY("the same") },
+    { K("particle_spacing"), S(spacing), POSITIVE, UNIT("m"), BECOMES("spacing"), NEEDED,
+      SAY("distance of particles") },
     { K("CSML"), S(support), .param.type = TOBI_PARAM_REAL, .param.min = 2, .param.max = 4, UNIT("spacings"),
       BECOMES("isph.support"), SAY("radius at which the kernel is 0, as before"),
       .absent = "the method chooses the support" },
@@ -41,8 +42,9 @@ static const tobi_old_key setting_keys[] = {
 
 #define O(m) IN(tobi_tank_object, m)
 static const tobi_old_key object_keys[] = {
-    { K("name"), O(name), TEXT("text"), BECOMES(".name"), NEEDED, SAY("odd characters become _") },
-    { K("type"), O(type), TEXT("text"), NEEDED, SAY("now by the list: fluids, bodies or probes") },
+    { K("name"), O(name), TEXT("text"), BECOMES(".name"), NEEDED, SAY("of the object; odd characters become _") },
+    { K("type"), O(type), TEXT("text"), NEEDED,
+      SAY("Fluid, RigidBody or probe; now an entry of fluids, bodies or probes") },
     { K("objfile"), O(file), TEXT("text"), BECOMES(".mesh"),
       SAY("looked for by its last folders and its name beside the setting, in the working directory, in the "
           "folders above") },

@@ -310,7 +310,7 @@ static void mistakes_are_told_in_their_files(void **state)
     EXPECT("case/gate.json", "{ \"name\": \"gate\", \"type\": \"RigidBody\" }",
         "objfile: is missing: a closed mesh");
     EXPECT("case/gate.json", "{ \"type\": \"RigidBody\", \"objfile\": \"gate.json\" }",
-           "gate.json:1:1: name: is missing", "objfile: ");
+           "gate.json:1:1: name: is missing: of the object", "objfile: ");
     EXPECT("case/gate.json",
         "{ \"name\": \"gate\", \"type\": \"RigidBody\", \"objfile\": \"original/gate.obj\",\n"
            "\"inactivate\": [2, 1] }", "gate.json:2:15: inactivate: must be two times, [from, until]");
