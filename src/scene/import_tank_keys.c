@@ -42,7 +42,8 @@ static const tobi_old_key setting_keys[] = {
 
 #define O(m) IN(tobi_tank_object, m)
 static const tobi_old_key object_keys[] = {
-    { K("name"), O(name), TEXT("text"), BECOMES(".name"), NEEDED, SAY("of the object; odd characters become _") },
+    { K("name"), O(name), TEXT("text"), BECOMES(".name"), NEEDED,
+      SAY("of the object; odd characters become _") },
     { K("type"), O(type), TEXT("text"), NEEDED,
       SAY("Fluid, RigidBody or probe; now an entry of fluids, bodies or probes") },
     { K("objfile"), O(file), TEXT("text"), BECOMES(".mesh"),

@@ -68,10 +68,9 @@ static const tobi_param body_rows[] = {
       RANGE(10, 170), .unit = "degrees",
       .doc = "Angle, measured in the liquid, at which a surface with tension meets the body." },
     { .key = "absent.from", REAL, AT(tobi_body_def, absent_from), DURATION, .unit = "s", .text = "never",
-      .doc = "From then on a prescribed body is not there: a gate that is taken away at once. Not in "
-             "mlsmpm." },
+      .doc = "From then on a prescribed body is not there: a gate that is taken away at once." },
     { .key = "absent.until", REAL, AT(tobi_body_def, absent_until), DURATION, .unit = "s", .text = "the end",
-      .doc = "Then it is there again, and liquid in it is pushed out." },
+      .doc = "Then it is there again, and liquid in it is pushed out; a solid in it is not." },
     { .key = "texture", TEXT, AT(tobi_body_def, texture), .unit = "path",
       .doc = "A PNG or JPEG image that pictures show on the body instead of its colour; its mesh needs "
              "texture coordinates (vt of an OBJ file). With an opacity below 1 it is like "
