@@ -1,6 +1,7 @@
 /* What every method does to its particles. */
 #include "core/system.h"
 #include "core/opening.h"
+#include "geom/vec3.h"
 #include <math.h>
 #include <string.h>
 
@@ -112,11 +113,16 @@ static double opening_head(const tobi_system *s)
     return most;
 }
 
-/* Of inlets: all of their flow through a place two spacings wide, but at most ten times the fastest inlet. */
-static double narrow_speed(const tobi_system *s)
+/* All of a flow as a jet out of a place two spacings wide, which contracts to 0.61 of it (Kirchhoff 1869),
+   but at most TOBI_NARROWEST times as fast as the fastest that feeds it. */
+static double narrow_speed(const tobi_system *s, double flow, double fastest)
+{
+    return fmin(flow/(0.61*pow(2*s->smoothing.spacing, s->box.dimension - 1)), TOBI_NARROWEST*fastest);
+}
+
+static double inlet_speed(const tobi_system *s)
 {
     const int dimension = s->box.dimension;
-    const double hole = pow(2*s->smoothing.spacing, dimension - 1);
     double flow = 0, fastest = 0;
     for (int k = 0; k < s->sim->opening_count; k++) {
         const tobi_opening *o = &s->sim->openings[k];
@@ -124,7 +130,40 @@ static double narrow_speed(const tobi_system *s)
         flow += o->speed*tobi_opening_area(o, dimension);
         fastest = fmax(fastest, o->speed);
     }
-    return fmin(flow/hole, 10*fastest);
+    return narrow_speed(s, flow, fastest);
+}
+
+/* The flow that a body's wet points push, m3/s; *fastest is raised to their speed. */
+static double pushed_flow(const tobi_body *b, double *fastest)
+{
+    double flow = 0;
+    for (int64_t k = 0; k < b->point_count; k++) {
+        const double speed = b->wet[k] ? vec3_dot(b->normal[k], b->point_velocity[k]) : 0;
+        if (!(speed > 0)) continue;
+        flow += b->area[k]*speed;
+        *fastest = fmax(*fastest, speed);
+    }
+    return flow;
+}
+
+/* A free jet is no faster than the pressure on what pushes it explains: the work of a rigid body is its flow
+   times that pressure. */
+double tobi_system_pushed_speed(const tobi_system *s)
+{
+    double least, most, flow = 0, fastest = 0, head = 0;
+    for (int k = 0; k < s->sim->body_count; k++) {
+        const tobi_body *b = &s->sim->bodies[k];
+        const tobi_body_info *i = &b->info;
+        if (b->rigid.kind != TOBI_PRESCRIBED || !b->motion) continue;
+        const double own = pushed_flow(b, &fastest);
+        const double work = vec3_dot(i->pressure_force, i->velocity)
+            + vec3_dot(i->pressure_torque, i->angular_velocity);
+        if (own > 0) head = fmax(head, b->deforms ? INFINITY : -work/own);
+        flow += own;
+    }
+    if (!(flow > 0)) return 0;
+    tobi_system_densities(s, &least, &most);
+    return fmin(narrow_speed(s, flow, fastest), sqrt(2*head/least));
 }
 
 /* Spacings in a step: what moves less is at rest but for rounding, though nothing drives it. */
@@ -134,7 +173,7 @@ double tobi_system_speed_scale(const tobi_system *s)
 {
     double fall = opening_head(s);
     for (int a = 0; a < s->box.dimension; a++) fall += tobi_simulation_pull(s->sim, a)*s->box.size[a];
-    const double brought = fmax(2*s->start_speed, narrow_speed(s));
+    const double brought = fmax(2*s->start_speed, fmax(inlet_speed(s), s->pushed_speed));
     const double scale = sqrt(2*fall + 8*tobi_system_capillary(s)) + s->sim->body_speed + brought;
     return s->dt > 0 ? fmax(scale, STILL*s->smoothing.spacing/s->dt) : scale;
 }

@@ -42,6 +42,7 @@ typedef struct tobi_system {
     double gravity[3];              /* m/s2, what particles feel, see sph/hydrostatic.h       */
     double start_speed;             /* m/s, fastest particle at the start, or point of a body
                                        since                                               */
+    double pushed_speed;            /* m/s, the most so far of tobi_system_pushed_speed      */
     double start_head;              /* m2/s2, g times the height of the fluid at the start   */
     tobi_step_info info;            /* of the last step                                      */
     int64_t first_id;               /* of the world's ids; particles.id count from there     */
@@ -158,8 +159,12 @@ double tobi_system_density_ratio(const tobi_system *s);
 /* Tension over density and spacing, the most of all fluids, m2/s2. */
 double tobi_system_capillary(const tobi_system *s);
 /* A speed nothing in the scene should exceed by much, m/s: free fall across the box and from the pressure of
-   outlets, the bodies, the initial velocities, and the flow of inlets through a narrow place. */
+   outlets, the bodies, the initial velocities, and the flow of inlets and bodies through a narrow place. */
 double tobi_system_speed_scale(const tobi_system *s);
+/* How many times as fast as what feeds it the liquid in a narrow place may be. */
+enum { TOBI_NARROWEST = 10 };
+/* After a step, m/s: how fast the liquid that bodies with a motion push may be in a narrow place. */
+double tobi_system_pushed_speed(const tobi_system *s);
 /* Room for so many rows, lists and all; nothing else changes, also on failure. */
 tobi_status tobi_system_room(tobi_system *s, int64_t rows, tobi_error *err);
 /* `count` new particles between two steps of a world that has started: the first row into *first, all zero

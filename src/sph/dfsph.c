@@ -130,19 +130,20 @@ static double choose_dt(tobi_system *s)
 {
     dfsph *m = s->state;
     double d = s->smoothing.spacing, dt, speed = fmax(m->memory.speed, s->sim->body_speed);
-    /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
-    const double depth = s->start_head*tobi_system_density_ratio(s), body = s->sim->body_speed;
-    double head = fmin(m->memory.head, 1.5*depth + body*body + 4*tobi_system_capillary(s));
     m->motion_dt = fmin(sph_gravity_dt(s),
-                        s->sim->def.cfl*d/sqrt(fmax(fmax(speed*speed, 4*head), 1e-24)));
+                        s->sim->def.cfl*d/sqrt(fmax(fmax(speed*speed, 4*m->memory.head), 1e-24)));
     if (s->sim->def.time_step > 0) {
         dt = s->sim->def.time_step;
     } else {
         dt = fmin(m->motion_dt, fmin(fmin(sph_viscous_dt(s), sph_tension_dt(s)), tobi_couple_dt(s)));
         if (s->sim->def.time_step_max > 0) dt = fmin(dt, s->sim->def.time_step_max);
         if (m->memory.dt > 0) dt = fmin(dt, 1.1*m->memory.dt);
-        else if (s->sim->soft.solids)      /* liquid before them sets off at once, pressed by its depth */
-            dt = fmin(dt, s->sim->def.cfl*d/(2*sqrt(fmax(s->start_head, 1e-24))));
+        else {      /* liquid beside solids sets off at once, and that before a body through narrow places */
+            const double depth = s->sim->soft.solids ? 4*s->start_head : 0;
+            const tobi_simulation *w = s->sim;
+            const double body = w->body_speed > w->wall_speed ? TOBI_NARROWEST*w->body_speed : 0;
+            dt = fmin(dt, s->sim->def.cfl*d/sqrt(fmax(fmax(depth, body*body), 1e-24)));
+        }
         m->memory.dt = dt;
     }
     return dt;
@@ -348,7 +349,7 @@ static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
     solve_pressure(s, m, t, &q);
     launch(s, m, k->sph_pressure_kick, t);
     s->info.force_sum = t[0]*s->smoothing.volume;
-    m->memory.head = q.head;
+    m->memory.head = fmin(q.head, sph_explained_head(s));
     s->info.divergence_iterations = q.iterations;
     s->info.divergence_converged = q.converged;
     s->info.divergence_mean = q.error/s->dt;

@@ -5,6 +5,7 @@
 #include "sph/boundary.h"
 #include "sph/openings.h"
 #include "sph/phases.h"
+#include "geom/vec3.h"
 #include <math.h>
 #include <string.h>
 
@@ -222,6 +223,29 @@ void sph_set_body_velocities(tobi_system *s, double *clock)
         else if (b->motion) tobi_body_set_point_velocities(b);
     }
     tobi_stage_end(&s->sim->stages, "motion", clock);
+}
+
+/* Of bodies with a motion, m/s2. */
+static double fastest_change(const tobi_system *s)
+{
+    double most = 0;
+    for (int k = 0; k < s->sim->body_count; k++) {
+        const tobi_body *b = &s->sim->bodies[k];
+        for (int64_t i = 0; b->rigid.kind == TOBI_PRESCRIBED && b->motion && i < b->mesh.vertex_count; i++) {
+            double change[3];
+            vec3_sub(change, b->vertex_velocity[i], b->vertex_before[i]);
+            most = fmax(most, vec3_dot(change, change));
+        }
+    }
+    return sqrt(most)/s->sim->dt;
+}
+
+double sph_explained_head(const tobi_system *s)
+{
+    const double depth = s->start_head*tobi_system_density_ratio(s);
+    const double body = fmax(s->sim->body_speed, s->pushed_speed);
+    return 1.5*depth + body*body + fastest_change(s)*vec3_length(s->box.size)
+        + 4*tobi_system_capillary(s);
 }
 
 static void apply_tension(tobi_system *s, sph_view *v, const sph_kernels *k)

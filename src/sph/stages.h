@@ -34,6 +34,10 @@ double sph_measure_density(tobi_system *s, sph_view *v, const sph_kernels *k, do
                            double *clock);
 /* Gives the points of bodies the velocities that were predicted for this step. */
 void sph_set_body_velocities(tobi_system *s, double *clock);
+/* In a step, m2/s2: the most of twice the mean pressure over the density that depth, tension and bodies
+   explain: their speed, that of the liquid that they push, and their acceleration across the domain. The
+   pressure of a sudden change grows as 1/dt. */
+double sph_explained_head(const tobi_system *s);
 /* v += dt (surface tension, gravity, viscosity, filter, friction, lift); v->filter is set. */
 void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock);
 /* Forces on walls and bodies by particles.pressure and the friction of this step. */

@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* To be raised whenever what a checkpoint holds changes; 0: from before there was a number. */
-enum { FORMAT = 11 };
+enum { FORMAT = 12, CLOCK = 5 };
 
 static tobi_status check_format(tobi_store *f, const char *path, tobi_error *err)
 {
@@ -29,11 +29,12 @@ static tobi_status check_format(tobi_store *f, const char *path, tobi_error *err
 static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
 {
     const tobi_simulation *s = &w->sim;
-    const double clock[4] = {s->time, s->dt, s->body_speed, w->system[0].start_speed};
+    const double clock[CLOCK] = { s->time, s->dt, s->body_speed, w->system[0].start_speed,
+                                  w->system[0].pushed_speed };
     TOBI_TRY(tobi_store_put_int(f, "format", FORMAT, err));
     TOBI_TRY(tobi_store_put_int(f, "step", s->step, err));
     TOBI_TRY(tobi_store_put_int(f, "bodies", s->body_count, err));
-    TOBI_TRY(tobi_store_put(f, "clock", TOBI_F64, 4, 1, clock, err));
+    TOBI_TRY(tobi_store_put(f, "clock", TOBI_F64, CLOCK, 1, clock, err));
     TOBI_TRY(tobi_store_put(f, "gravity", TOBI_F64, 3, 1, s->def.gravity, err));
     if (s->opening_count > 0) {
         double way[TOBI_OPENING_LIMIT];
@@ -62,7 +63,7 @@ tobi_status tobi_world_save(tobi_world *w, const char *path, tobi_error *err)
 /* A checkpoint as read, before the world takes it over. */
 typedef struct loaded {
     int64_t step;
-    double clock[4], gravity[3], way[TOBI_OPENING_LIMIT];
+    double clock[CLOCK], gravity[3], way[TOBI_OPENING_LIMIT];
     tobi_loaded_system system[TOBI_SYSTEM_LIMIT];
     tobi_loaded_bodies bodies;
 } loaded;
@@ -85,10 +86,10 @@ static tobi_status check_bodies(const tobi_world *w, tobi_store *f, tobi_error *
 static tobi_status read_clock(tobi_store *f, const char *path, loaded *l, tobi_error *err)
 {
     TOBI_TRY(tobi_store_get_int(f, "step", &l->step, err));
-    TOBI_TRY(tobi_store_get(f, "clock", TOBI_F64, 4, 1, l->clock, err));
+    TOBI_TRY(tobi_store_get(f, "clock", TOBI_F64, CLOCK, 1, l->clock, err));
     TOBI_TRY(tobi_store_get(f, "gravity", TOBI_F64, 3, 1, l->gravity, err));
     int good = l->step >= 0 && l->clock[0] >= 0;
-    for (int k = 0; k < 4; k++) good &= isfinite(l->clock[k]) != 0;
+    for (int k = 0; k < CLOCK; k++) good &= isfinite(l->clock[k]) != 0;
     for (int k = 0; k < 3; k++) good &= isfinite(l->gravity[k]) != 0;
     if (good) return TOBI_OK;
     return tobi_fail(err, TOBI_DAMAGED, "%s: its clock or gravity is no number", path);
@@ -127,6 +128,7 @@ static void take_over(tobi_world *w, loaded *l)
     w->system[0].step = l->step;
     w->system[0].dt = l->clock[1];
     w->system[0].start_speed = l->clock[3];
+    w->system[0].pushed_speed = l->clock[4];
     tobi_world_restore_gravity(w, l->gravity);
     for (int k = 0; k < w->system_count; k++) tobi_system_restore(&w->system[k], &l->system[k]);
     tobi_step_sum_up(w);

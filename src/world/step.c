@@ -120,6 +120,15 @@ static void remember_speed(tobi_world *w)
         w->system[k].start_speed = fmax(w->system[k].start_speed, imposed);
 }
 
+/* It leaves its narrow place as a jet. */
+static void remember_pushed(tobi_world *w)
+{
+    for (int k = 0; k < w->system_count; k++) {
+        tobi_system *s = &w->system[k];
+        if (s->fluid_count > 0) s->pushed_speed = fmax(s->pushed_speed, tobi_system_pushed_speed(s));
+    }
+}
+
 /* One step or substep of a system. */
 static tobi_status step_system(tobi_system *s, tobi_error *err)
 {
@@ -304,6 +313,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     tobi_constraints_settle(&s->constraints, s->bodies, s->dt);
     if (s->soft.solids) s->body_speed = fmax(s->body_speed, s->soft.speed);
     TOBI_TRY(move_bodies(w, err));
+    remember_pushed(w);
     s->time += s->dt;
     s->step++;
     TOBI_TRY(tobi_world_kick_bodies(w, err));
