@@ -66,14 +66,16 @@ static tobi_status allocate_work(orient_work *w, int64_t n)
                ? TOBI_OK : TOBI_NO_MEMORY;
 }
 
-static tobi_status fail_crowded(const tobi_mesh *mesh, const char *name, const tobi_edge_report *r,
+static tobi_status fail_crowded(const tobi_mesh *mesh, const orient_work *w, const tobi_edge_report *r,
                                 tobi_error *err)
 {
     const double *a = mesh->vertices[r->ends[0]], *b = mesh->vertices[r->ends[1]];
     return tobi_fail(err, TOBI_INVALID, "mesh '%s' does not say what is inside: %lld edges with more than "
                      "two triangles and %lld with one, the first from (%.6g, %.6g, %.6g) to "
-                     "(%.6g, %.6g, %.6g): sheets without thickness? A closed surface is needed",
-                     name, (long long)r->crowded, (long long)r->open, a[0], a[1], a[2], b[0], b[1], b[2]);
+                     "(%.6g, %.6g, %.6g): sheets without thickness? %s",
+                     w->name, (long long)r->crowded, (long long)r->open, a[0], a[1], a[2], b[0], b[1], b[2],
+                     w->what == OPEN ? "A vessel is open at its top alone, also in 2-D"
+                                     : "A closed surface is needed");
 }
 
 /* True if half-edges h and g run from the same vertex, that is, if their triangles disagree. */
@@ -344,10 +346,10 @@ static tobi_status orient_mesh(tobi_mesh *mesh, orient_work *w, tobi_error *err)
     if (w->turned)
         tobi_mesh_note(mesh, "%lld of %lld triangles turned to agree with their neighbours",
                        (long long)w->turned, (long long)mesh->triangle_count);
-    if (report.crowded) return fail_crowded(mesh, w->name, &report, err);
+    if (report.crowded) return fail_crowded(mesh, w, &report, err);
     int patched = report.open > 0;
     if (patched) TOBI_TRY(close_holes(mesh, w, &report, err));
-    if (report.open || report.crowded) return fail_crowded(mesh, w->name, &report, err);
+    if (report.open || report.crowded) return fail_crowded(mesh, w, &report, err);
     TOBI_TRY(measure_shells(mesh, &w->shells));
     TOBI_TRY(turn_shells(mesh, w, err));
     if (w->what == OPEN) {

@@ -53,6 +53,22 @@ static void test_walls(void **state)
     tobi_mesh_free(&open);
 }
 
+/* A channel in 2-D has its ends too: a floor and two sides alone do not say where their inside is. */
+static void test_channel(void **state)
+{
+    (void)state;
+    static const double at[8][3] = { { 0, 0, -1 }, { 0.3, 0, -1 }, { 0.3, 0, 1 }, { 0, 0, 1 },
+                                     { 0, 0.2, -1 }, { 0.3, 0.2, -1 }, { 0.3, 0.2, 1 }, { 0, 0.2, 1 } };
+    static const int32_t channel[6][3] = { { 0, 1, 2 }, { 0, 2, 3 }, { 0, 3, 7 },
+                                           { 0, 7, 4 }, { 1, 5, 6 }, { 1, 6, 2 } };
+    tobi_mesh m;
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_mesh_build("channel", 8, at, 6, channel, &m, &err), TOBI_OK);
+    assert_int_equal(tobi_mesh_make_vessel(&m, 0, 0.1, 2, "channel", &err), TOBI_INVALID);
+    if (!strstr(err.text, "A vessel is open at its top alone, also in 2-D")) fail_msg("%s", err.text);
+    tobi_mesh_free(&m);
+}
+
 static const char *path;
 #define HALF "{ \"vessel\": \"cup\", \"level\": 0.5 }"
 
@@ -309,7 +325,7 @@ int main(void)
     snprintf(box, sizeof box, "{ \"name\": \"box\", \"vessel\": true, \"box\": { \"min\": [0, 0, 0], "
              "\"max\": [1, 1, 1] } }");
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_walls),       cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_channel), cmocka_unit_test(test_walls),       cmocka_unit_test(test_levels),
         cmocka_unit_test(test_compartments), cmocka_unit_test(test_mistakes),
         cmocka_unit_test(test_solid_inside), cmocka_unit_test(test_walls_on_cells),
         cmocka_unit_test(test_later_fluids),
