@@ -1,8 +1,8 @@
 /* Pressure that no solve knows: of still water below its level, and of vessels without a free surface, where
    gravity along axes with walls makes nothing else. It is taken from what the particles feel (s->gravity),
    which pressures that pull would have to hold, and added exactly where pressures and forces leave. Of
-   several fluids it is that of the first, and the others feel the rest. Drawback: still water is of one
-   density only. */
+   several fluids it is that of the first, of still water that of the lightest, and the others feel the rest.
+   Drawback: the rest of a heavier fluid's weight is left to the particles. */
 #include "sph/hydrostatic.h"
 #include "sph/state.h"
 
@@ -15,7 +15,7 @@ void sph_remove_gravity(tobi_system *s)
 void sph_gravity_at(const tobi_system *s, const double x[3], int fluid, double gravity[3])
 {
     const tobi_reference *w = &sph_of(s)->reference;
-    const double held = tobi_reference_share(w, x)*w->push/s->fluid[0].density;
+    const double held = tobi_reference_share(w, x)*w->push/s->fluid[fluid].density;
     const double rest = 1 - s->fluid[0].density/s->fluid[fluid].density;     /* as sph_add_buoyancy */
     for (int a = 0; a < 3; a++) gravity[a] = s->gravity[a] - held*w->down[a];
     for (int a = 0; a < s->box.dimension && rest != 0; a++)

@@ -16,20 +16,19 @@ enum { DROPS = 1024 };
 void sph_reference_set(tobi_system *s, double low)
 {
     tobi_reference *w = &sph_of(s)->reference;
-    double g2 = 0, h = s->smoothing.h;
+    double g2 = 0, h = s->smoothing.h, least, most;
     *w = (tobi_reference){.cover = COVER*h, .ramp = RAMP*h, .rest = REST*h};
     w->level = low - 0.5*s->smoothing.spacing;
     for (int a = 0; a < s->box.dimension; a++)
         if (!s->box.periodic[a]) g2 += s->gravity[a]*s->gravity[a];
-    for (int f = 1; f < s->fluid_count; f++)
-        if (s->fluid[f].density != s->fluid[0].density) g2 = 0;
     if (!(g2 > 0)) return;
+    tobi_system_densities(s, &least, &most);
     for (int a = 0; a < s->box.dimension; a++) {
         if (s->box.periodic[a]) continue;
         w->down[a] = s->gravity[a]/sqrt(g2);
         w->corner[a] = w->down[a] > 0 ? 0 : s->box.size[a];
     }
-    w->push = low > 0 ? s->fluid[0].density*sqrt(g2) : 0;
+    w->push = low > 0 ? least*sqrt(g2) : 0;
 }
 
 typedef struct counting { const float *surface_depth; double scale; int64_t *n; } counting;

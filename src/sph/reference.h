@@ -3,8 +3,8 @@
 #include "core/system.h"
 #include "sph/stages.h"
 
-/* Sets s->still to the reference below a depth of `low`, m; 0, a vessel without gravity across its walls and
-   fluids of several densities have none. */
+/* Sets s->still to the reference below a depth of `low`, m; 0 and a vessel without gravity across its walls
+   have none. That of the lightest fluid, so that none is left to rise. */
 void sph_reference_set(tobi_system *s, double low);
 /* Drop of the free surface, m, but for the few deepest of its particles, which disorder may have made; 0
    where it has no more. After sph_measure_density, which leaves the depths in particles.surface_depth. Leaves

@@ -235,6 +235,30 @@ static void test_interfaces(void **state)
     tobi_world_destroy(w);
 }
 
+/* A heavier body sinks in oil above water, a lighter one rises in water below oil: the weight of the liquids
+   does not make their particles a lattice that holds it. */
+static void test_slow_bodies(void **state)
+{
+    static const char *const methods[] = { "dfsph", "wcsph" };
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        const double start = k%2 ? 0.06 : 0.26;
+        char body[300];
+        tobi_error err = { 0 };
+        tobi_world *w;
+        tobi_body_info at;
+        snprintf(body, sizeof body, "\"gravity\": [0, -9.81], \"bodies\": [ { \"name\": \"b\","
+                 "\"box\": { \"min\": [0.14, %g], \"max\": [0.26, %g] }, \"dynamics\": \"free\","
+                 "\"density\": 900 } ],", start, start + 0.08);
+        must(make(methods[k/2], 1, WATER "," OIL("800"), body, &w, &err), &err);
+        must(tobi_world_advance(w, 0.5, NULL, &err), &err);
+        assert_int_equal(tobi_world_body(w, 0, &at), TOBI_OK);
+        const double moved = (at.position[1] - start - 0.04)/0.02;
+        if (k%2 ? moved < 0.3 : moved > -0.6) fail_msg("%s: %g spacings", methods[k/2], moved);
+        tobi_world_destroy(w);
+    }
+}
+
 static void test_mistakes(void **state)
 {
     (void)state;
@@ -275,6 +299,7 @@ int main(void)
         cmocka_unit_test(test_jump),
         cmocka_unit_test(test_iterations),
         cmocka_unit_test(test_interfaces),
+        cmocka_unit_test(test_slow_bodies),
         cmocka_unit_test(test_mistakes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
