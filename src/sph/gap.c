@@ -1,8 +1,9 @@
 /* A body that lies on the floor keeps particles out of a gap around the contact that is a spacing high: of a
    sphere 8 spacings across a third of the section. Water would fill it, at the pressure of still water (18).
    So points there are pressed by all the water above them: by as much of it as particles do not cover, and
-   only what moves is missing. Drawback: a flat body that lies close has its full buoyancy too, as if it
-   stood on grains. */
+   only what moves is missing. A body that no particle sees lies in the dry, though still water may stand
+   higher elsewhere. Drawback: a flat body that lies close has its full buoyancy too, as if it stood on
+   grains. */
 #include "sph/boundary.h"
 #include "sph/state.h"
 
@@ -52,6 +53,7 @@ static void wet_range(const void *view, int64_t begin, int64_t end, double *tota
         const tobi_body *b = &s->sim->bodies[k];
         const int64_t q = all - bins[k].item;
         const double *x = b->point[q], *n = b->normal[q];
+        if (state->links.first[k] == state->links.first[k + 1]) continue;
         if (b->covered[q] >= TOBI_COVERED || b->is_absent) continue;
         if (!(tobi_reference_pressure(&state->reference, x) > 0)) continue;
         if (faces_side(s, x, n) || faces_body(s, k, x, n)) b->wet[q] = TOBI_WET_GAP;

@@ -192,6 +192,35 @@ static void compression_is_told(void **state)
     }
 }
 
+/* A box in the dry, on the floor before a dam or on a shelf behind a gate: below the level, not in water. */
+static void the_dry_feels_no_water(void **state)
+{
+    (void)state;
+    static const char *const methods[] = { "dfsph", "wcsph" };
+    for (int k = 0; k < 4; k++) {
+        tobi_world *world;
+        tobi_body_info info;
+        char text[1000];
+        const double floor = k < 2 ? 0 : 0.1;
+        snprintf(text, sizeof text, "{ \"method\": \"%s\", \"dimension\": 2, \"spacing\": 0.01, "
+                 "\"domain\": { \"min\": [0, 0], \"max\": [0.6, 0.3] }, \"end_time\": 1, "
+                 "\"gravity\": [0, -9.81], \"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"box\": { "
+                 "\"min\": [0, 0], \"max\": [0.1, 0.2] } } ] } ], \"bodies\": [ { \"name\": \"box\", "
+                 "\"box\": { \"min\": [0.43, %g], \"max\": [0.47, %g] }, \"dynamics\": \"free\" }%s ] }",
+                 methods[k%2], floor, floor + 0.04, k < 2 ? "" : ", { \"name\": \"shelf\", \"box\": { "
+                 "\"min\": [0.4, 0.05], \"max\": [0.5, 0.1] } }, { \"name\": \"gate\", \"box\": { "
+                 "\"min\": [0.1, 0], \"max\": [0.13, 0.28] } }");
+        OK(start_scene(text, &world, &err));
+        for (double t = 0.01; t < 0.035; t += 0.01) {
+            OK(tobi_world_advance(world, t, NULL, &err));
+            OK(tobi_world_body(world, 0, &info));
+            assert_true(info.pressure_force[1] == 0);
+        }
+        assert_true(fabs(info.position[1] - floor - 0.02) < 1e-5);
+        tobi_world_destroy(world);
+    }
+}
+
 static void spray_has_a_large_surface(void **state)
 {
     (void)state;
@@ -214,6 +243,7 @@ int main(void)
         cmocka_unit_test(water_in_gaps_presses),
         cmocka_unit_test(restless_starts_are_told),
         cmocka_unit_test(compression_is_told),
+        cmocka_unit_test(the_dry_feels_no_water),
         cmocka_unit_test(what_turns_about_its_axis_is_not_told),
         cmocka_unit_test(spray_has_a_large_surface),
     };
