@@ -11,6 +11,10 @@ tobi_status tobi_body_plan_absence(tobi_body *b, const tobi_body_def *def, const
                                    tobi_error *err)
 {
     int axis = 0;
+    if (!(def->absent_from > 0) && def->absent_until > 0)
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s' is absent until %g s, and "
+                                          "absent.from does not say from when; it is there at the start",
+                                          b->name, def->absent_until), "absent.until");
     if (!(def->absent_from > 0)) return TOBI_OK;
     if (def->dynamics != TOBI_PRESCRIBED)
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s': only a prescribed body can be "

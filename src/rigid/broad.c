@@ -119,7 +119,7 @@ tobi_status tobi_broad_find(tobi_broad *b, const tobi_body *bodies, const tobi_s
     b->pair_count = 0;
     for (int k = 0; k < count; k++) box_body(b, k, &bodies[k], &shapes[k], dt);
     for (int k = 0; k < count; k++)
-        if (shapes[k].solid) b->entries[n++] = b->entries[k];
+        if (shapes[k].solid && !bodies[k].is_absent) b->entries[n++] = b->entries[k];
     rotate_axes(b, n);
     qsort(b->entries, (size_t)n, sizeof *b->entries, compare_entries);
     for (int i = 0; i < n; i++) {

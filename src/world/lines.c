@@ -29,6 +29,9 @@ static tobi_status check_bodies(const tobi_world *w, const tobi_line_def *def, t
     if (l->to_body >= 0 && w->sim.bodies[l->to_body].deforms)
         return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "line '%s': body '%s' deforms; a line goes "
                                           "to a rigid one", def->name, def->to_body), "to_body");
+    if (l->to_body >= 0 && w->sim.bodies[l->to_body].absent[0] > 0)
+        return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "line '%s': body '%s' is absent at times; a "
+                                          "line goes to one that stays", def->name, def->to_body), "to_body");
     return TOBI_OK;
 }
 

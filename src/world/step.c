@@ -280,9 +280,10 @@ static tobi_status check_runaway(const tobi_system *s, tobi_error *err)
         if (!isfinite(speed))
             return tobi_fail(err, TOBI_DIVERGED,
                              "the simulation diverged at t = %.9g s, step %lld: the speed of particle %lld "
-                             "at (%g, %g, %g) m is no number any more; a %s smaller than %g may help",
+                             "at (%g, %g, %g) m is no number any more; a %s smaller than %g may help%s",
                              s->sim->time, (long long)s->sim->step, (long long)s->particles.id[i],
-                             x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], key, cfl);
+                             x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], key, cfl,
+                             remedy);
         return tobi_fail(err, TOBI_DIVERGED,
                          "the simulation diverged at t = %.9g s, step %lld: particle %lld at (%g, "
                          "%g, %g) m moves at %g m/s, the limit is %g m/s; a %s smaller than %g may "

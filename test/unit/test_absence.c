@@ -156,6 +156,35 @@ static void a_thick_body_comes_back_into_water(void **state)
     }
 }
 
+/* A block that rests on a shelf falls when the shelf is taken away, and lies on the floor. */
+static void a_shelf_is_taken_away(void **state)
+{
+    (void)state;
+    tobi_error err;
+    tobi_body_info info;
+    tobi_world *world = make_tank("dfsph", 0.1);
+    tobi_body_def shelf = make_gate(0.05, 0), wall = make_gate(0, 0), block = make_gate(0, 0);
+    shelf.name = "shelf";
+    shelf.box_min[0] = 0.3; shelf.box_max[0] = 0.4; shelf.box_min[1] = 0.05; shelf.box_max[1] = 0.1;
+    block.name = "block";
+    block.box_min[0] = 0.33; block.box_max[0] = 0.37; block.box_min[1] = 0.1; block.box_max[1] = 0.14;
+    block.dynamics = TOBI_FREE;
+    wall.name = "wall";
+    assert_int_equal(tobi_world_add_body(world, &shelf, &err), TOBI_OK);
+    assert_int_equal(tobi_world_add_body(world, &block, &err), TOBI_OK);
+    assert_int_equal(tobi_world_add_body(world, &wall, &err), TOBI_OK);
+    advance(world, 0.05);
+    assert_int_equal(tobi_world_body(world, 1, &info), TOBI_OK);
+    print_message("rests at %.5f m\n", info.position[1]);
+    assert_true(fabs(info.position[1] - 0.12) < 0.1*D);
+    advance(world, 0.15);
+    assert_int_equal(tobi_world_body(world, 1, &info), TOBI_OK);
+    const double fall = 0.12 - info.position[1];
+    print_message("fell %.4f m, freely %.4f\n", fall, 0.5*9.81*0.1*0.1);
+    assert_true(fabs(fall - 0.5*9.81*0.1*0.1) < 0.3*D);
+    tobi_world_destroy(world);
+}
+
 /* A run that was stored and loaded, before, while and after the gate is absent, ends in the same bits. */
 static void a_restart_is_the_same(void **state)
 {
@@ -210,6 +239,8 @@ static void what_cannot_be_absent_is_refused(void **state)
     tobi_world *world = make_tank("dfsph", 0.1);
     tobi_body_def b = make_gate(0.2, 0.1);
     refuse(world, &b, "is absent from 0.2 s until 0.1 s; the second must be later");
+    b = make_gate(0, 0.1);
+    refuse(world, &b, "is absent until 0.1 s, and absent.from does not say from when; it is there at");
     b = make_gate(0.2, 0);
     b.dynamics = TOBI_FREE;
     refuse(world, &b, "only a prescribed body can be absent");
@@ -232,6 +263,7 @@ int main(void)
         cmocka_unit_test(a_gate_is_taken_away),
         cmocka_unit_test(a_body_comes_back),
         cmocka_unit_test(a_thick_body_comes_back_into_water),
+        cmocka_unit_test(a_shelf_is_taken_away),
         cmocka_unit_test(a_restart_is_the_same),
         cmocka_unit_test(what_cannot_be_absent_is_refused),
     };

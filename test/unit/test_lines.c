@@ -211,6 +211,11 @@ static void refuse_more(const tobi_world_def *w, tobi_body_def *b, const tobi_li
     }
     d.to_body = "eel";
     refuse(world, &d, TOBI_UNSUPPORTED, "line 'l': body 'eel' deforms; a line goes to a rigid one");
+    b->name = "gate", b->motion = NULL, b->absent_from = 0.1;
+    assert_int_equal(tobi_world_add_body(world, b, &err), TOBI_OK);
+    b->absent_from = 0;
+    d.to_body = "gate";
+    refuse(world, &d, TOBI_UNSUPPORTED, "line 'l': body 'gate' is absent at times; a line goes to one that");
     assert_int_equal(tobi_world_start(world, &err), TOBI_OK);
     d.to_body = NULL;
     refuse(world, &d, TOBI_INVALID, "a started world takes no more lines");
