@@ -11,7 +11,8 @@ cat > dam.json <<'END'
   "bodies": [{"name": "post", "box": {"min": [0.3, 0.08, 0], "max": [0.34, 0.12, 0.2]}}],
   "output": {"interval": 0.05, "frames": true, "picture": {"width": 320, "height": 180}} }
 END
-expect 0 "" run dam.json --out dam --quiet
+# water that strikes the post: its force scatters
+expect 0 "scatters by" run dam.json --out dam --quiet
 expect 0 "" picture dam
 check "a picture in its own size" test "$(head -c 24 dam/picture.png | tail -c 8 | od -An -tx1 | tr -d ' ')" = 00000140000000b4
 expect 0 "" picture dam --output 1 --out a.png --set output.picture.field=pressure --set output.picture.axes=true
@@ -31,7 +32,7 @@ for change in look=particles map=magma arrows=true slice=0.05 transparent=true m
         --set output.picture.$change
     check "$change changes it" test -s b.png -a "$(cmp -s a.png b.png; echo $?)" = 1
 done
-expect 0 "" run dam.json --out follows --quiet --set output.picture.follow=post --set "output.picture.look=surface" \
+expect 0 "scatters by" run dam.json --out follows --quiet --set output.picture.follow=post --set "output.picture.look=surface" \
     --set "output.camera={\"position\": [0.2, -0.8, 0.3], \"look_at\": [0.2, 0.1, 0.1], \"angle\": 30}"
 check "a picture at each output" test -s follows/frames/frame_000002.png
 
@@ -77,12 +78,12 @@ check "a camera inside of a body is told, and the run goes on" \
 
 views='output.views=[{"name": "top", "camera": {"position": [0.2, 0.1, 2], "look_at": [0.2, 0.1, 0], "angle": 20},
     "picture": {"field": "pressure", "width": 320, "height": 180}}, {"name": "all", "picture": {"width": 160}}]'
-expect 0 "" run dam.json --out views --quiet --set "$views"
+expect 0 "scatters by" run dam.json --out views --quiet --set "$views"
 check "a picture of each view at each output" test -s views/frames/top_000002.png -a -s views/frames/all_000002.png
 check "the output's own are the same" cmp -s views/frames/frame_000001.png dam/frames/frame_000001.png
 expect 0 "" picture views --view top
 expect 0 "" picture views --view all --output 1
-expect 0 "" run dam.json --out views --quiet --force
+expect 0 "scatters by" run dam.json --out views --quiet --force
 check "pictures of an earlier run are gone" test ! -e views/frames/top_000000.png
 expect 1 "the scene of dam has no view 'top'" picture dam --view top
 expect 1 "\"frame\", the name of the output's own pictures" run dam.json --out no --set 'output.views=[{"name": "frame"}]'
