@@ -192,6 +192,7 @@ tobi_status isph_begin(tobi_system *s, tobi_error *err)
     sph_openings_mark(s, &m->view);
     v->held = m->view.held;
     find_geometry(s, m, t);
+    sph_soft_balance(s, v->concentration_gradient, v->gate);
     s->info.volume_drift = t[1] > 0 ? -t[0]/t[1] : 0;
     tobi_stage_end(&s->sim->stages, "geometry", &clock);
     return TOBI_OK;

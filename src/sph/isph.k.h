@@ -200,17 +200,18 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
                       : v->by_eigenvalue ? 1 - isph_fade(1 - isph_least(m, v->dimension), ISPH_EIGEN_BEGIN,
                                                          ISPH_EIGEN_OPEN)
                                          : 1 - isph_fade(loss, ISPH_GATE_BEGIN, ISPH_GATE_OPEN);
-    const double gate = v->open ? rule*(1 - isph_gap(v, i, &gradient, loss))
-                                : 1 - isph_fade(loss, ISPH_CAVITY_BEGIN, ISPH_CAVITY_OPEN);
+    const double gap = v->open && rule > 0 ? isph_gap(v, i, &gradient, loss) : 0;
+    const double gate = v->open ? rule*(1 - gap) : 1 - isph_fade(loss, ISPH_CAVITY_BEGIN, ISPH_CAVITY_OPEN);
+    const double filled = v->weight*(1 + (double)main.w);
     if (!(gate > 0)) {
-        totals[0] += v->weight*(1 + (double)main.w) - 1;
+        totals[0] += filled - 1;
         totals[1] += 1;
     }
     if (v->dimension == 2) m[2] = 1;
     v->trace[i] = (float)trace;
     v->gate[i] = (float)gate;
     v->scale[i] = v->uniform_scale ? 1 : (float)isph_scale(v->dimension, trace);
-    v->concentration[i] = (float)(v->weight*(1 + (double)main.w));
+    v->concentration[i] = (float)(filled + gap*isph_larger(1 - filled, 0));
     v->concentration_gradient[i] = isph_weigh_gradient(v, gradient, trace);
     v->inverse[i] = isph_invert(m);
 }

@@ -1,8 +1,9 @@
 /* The exchange of a liquid with soft solids. A pair of a particle and a point has one force, which both get:
    2 p V_i V_b grad W with the particle's pressure mirrored at the point, its hydrostatic part, and friction.
    The points answer within the pressure solve; that they would stand still under the forces of the last step
-   is what the solve takes for granted of their insides (decision 64). Drawback: pairs are made one at a time;
-   points deep inside a solid are asked too. */
+   is what the solve takes for granted of their insides (decision 64). By isph particles are less even, and
+   the pairs of each are balanced (decision 96). Drawback: pairs are made one at a time; points deep inside a
+   solid are asked too. */
 #include "sph/soft.h"
 #include "exec/exec.h"
 #include "sph/stages.h"
@@ -110,7 +111,8 @@ static void fill_links(const void *view, int64_t begin, int64_t end)
                     .particle = i, .point = (int32_t)k, .rate = (float)f,
                     .share = (float)(volume*c->weight_correction*
                                      tobi_smoothing_w(c->shape, c->dimension, c->h, size)),
-                    .gradient = { (float)(-f*r[0]), (float)(-f*r[1]), (float)(-f*r[2]) } };
+                    .gradient = { (float)(-f*r[0]), (float)(-f*r[1]), (float)(-f*r[2]) },
+                    .push = { (float)(-f*r[0]), (float)(-f*r[1]), (float)(-f*r[2]) } };
             }
     }
 }
@@ -249,7 +251,7 @@ static void find_force(const tobi_system *s, const sph_soft_link *l, int hydrost
     subtract(s, l->particle, &q->position[b].x, r);
     for (int a = 0; a < s->box.dimension && hydrostatic; a++) fall -= s->gravity[a]*r[a];
     for (int a = 0; a < 3; a++)
-        out[a] = -fall*l->gradient[a] + 4*nu*l->rate*((double)w[a] - u[a]);
+        out[a] = -fall*l->push[a] + 4*nu*l->rate*((double)w[a] - u[a]);
 }
 
 /* Reactions on the points, before the velocities change. */
@@ -304,13 +306,47 @@ static void predict(const void *view, int64_t begin, int64_t end)
     }
 }
 
+typedef struct balance { const tobi_system *s; const tobi_float4 *lack; const float *gate; } balance;
+
+/* What particle i lacks towards the solids goes to its links, by their shares. */
+static void balance_particle(const balance *e, int64_t i)
+{
+    const sph_soft *q = soft_of(e->s);
+    const float *lack = &e->lack[i].x;
+    double share = 0, n[3] = { 0 }, along = 0, square = 0;
+    for (int32_t k = q->last[i]; k >= 0; k = q->link[k].previous) {
+        share += q->link[k].share;
+        for (int a = 0; a < 3; a++) n[a] += q->link[k].gradient[a];
+    }
+    for (int a = 0; a < 3; a++) {
+        along += n[a]*lack[a];
+        square += n[a]*n[a];
+    }
+    if (!(share > 0 && square > 0)) return;
+    const double part = (1 - e->gate[i])*along/(square*share);
+    for (int32_t k = q->last[i]; k >= 0; k = q->link[k].previous)
+        for (int a = 0; a < 3; a++) q->link[k].push[a] -= (float)(part*q->link[k].share*n[a]);
+}
+
+static void balance_links(const void *view, int64_t begin, int64_t end)
+{
+    const balance *e = view;
+    for (int64_t i = begin; i < end; i++) balance_particle(e, i);
+}
+
+void sph_soft_balance(tobi_system *s, const tobi_float4 *lack, const float *gate)
+{
+    const balance e = { s, lack, gate };
+    if (!is_alone(s)) tobi_loop(s->sim->exec.threads, s->particles.count, 0, balance_links, &e);
+}
+
 static double sum_answers(const sph_soft *q, int64_t i)
 {
     double sum = 0;
     for (int32_t k = q->last[i]; k >= 0; k = q->link[k].previous) {
         const sph_soft_link *l = &q->link[k];
         const double *u = q->answer[l->point];
-        sum += l->gradient[0]*u[0] + l->gradient[1]*u[1] + l->gradient[2]*u[2];
+        sum += l->push[0]*u[0] + l->push[1]*u[1] + l->push[2]*u[2];
     }
     return sum;
 }
@@ -339,7 +375,7 @@ static void sum_pressure(const tobi_system *s, int64_t k, const float *pressure,
     for (int64_t n = q->first[k]; n < q->first[k + 1]; n++) {
         const sph_soft_link *l = &q->link[n];
         const double p = pressure ? pressure[l->particle] : s->cells.record[l->particle].w;
-        for (int a = 0; a < 3; a++) f[a] += p*l->gradient[a];
+        for (int a = 0; a < 3; a++) f[a] += p*l->push[a];
     }
     for (int a = 0; a < 3; a++) f[a] *= 2*s->smoothing.volume;
 }
@@ -390,7 +426,7 @@ static void answer_points(const void *view, int64_t begin, int64_t end)
     for (int64_t k = begin; k < end; k++) {
         double sum[3] = { 0 };
         for (int64_t n = q->first[k]; n < q->first[k + 1]; n++)
-            for (int a = 0; a < 3; a++) sum[a] += w->in[q->link[n].particle]*q->link[n].gradient[a];
+            for (int a = 0; a < 3; a++) sum[a] += w->in[q->link[n].particle]*q->link[n].push[a];
         for (int a = 0; a < 3; a++)
             q->answer[k][a] = 2*w->s->smoothing.volume*sum[a]*inverse_mass(w->s, k);
     }

@@ -32,6 +32,10 @@ tobi_status sph_soft_find(struct tobi_system *s, tobi_error *err);
 void sph_soft_add_gradients(struct tobi_system *s);
 /* Adds dt times hydrostatic pressure of mirrors and friction to the velocities; keeps the reactions. */
 void sph_soft_add_forces(struct tobi_system *s);
+/* Of isph: takes out of the pushes of each particle what it lacks towards the solids, so that they get what
+   it does not feel (decision 96). lack: [particles] 1/m, its sum of V grad W over all neighbours and walls;
+   gate: [particles] 1 at a free surface, where that is no error. */
+void sph_soft_balance(struct tobi_system *s, const tobi_float4 *lack, const float *gate);
 /* Velocities of the points by all forces but the change of pressure, and their flux into particles.wall.
    solved: whether the pressure is solved for, with their answer; else they keep their velocities. */
 void sph_soft_begin(struct tobi_system *s, int solved);
