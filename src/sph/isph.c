@@ -94,7 +94,8 @@ double isph_choose_dt(tobi_system *s)
    goes FULL_SHIFT_STEP spacings in a step. */
 static void choose_shift(const tobi_system *s, isph *m)
 {
-    const double way = fmax(m->memory.speed, s->sim->body_speed)*s->dt/s->smoothing.spacing;
+    m->solver.view.speed = fmax(m->memory.speed, s->sim->body_speed);
+    const double way = m->solver.view.speed*s->dt/s->smoothing.spacing;
     m->solver.view.shifting = m->def.shifting*fmax(SHIFT_AT_REST, fmin(way/FULL_SHIFT_STEP, 1));
     m->solver.view.shift_damping = fmax(SHIFT_DAMPING, SHIFT_DAMPING_OF_WAY*way);
 }

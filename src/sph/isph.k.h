@@ -20,6 +20,9 @@
 #define ISPH_GAP_GRADIENT_FREE 0.25
 #define ISPH_GAP_LOSS_SHUT 0.3
 #define ISPH_GAP_LOSS_FREE 0.4
+/* A gap that closes is air: how fast, over the largest speed, it may still be water, and is surely air. */
+#define ISPH_GAP_CLOSING 0.1
+#define ISPH_GAP_AIR 0.3
 /* Least share of a row that is missing where the gate is open, per relative loss of neighbours: clusters
    whose rows are fuller than the lattice would float otherwise. */
 #define ISPH_EXCESS_FLOOR 0.5
@@ -168,8 +171,9 @@ TOBI_FN double isph_gap(const isph_view *v, int64_t i, const tobi_float4 *c, dou
     double gap = 0;
     for (int32_t k = v->last_link ? v->last_link[i] : -1; k >= 0; k = v->mirror[k].previous) {
         const isph_mirror *m = &v->mirror[k];
-        double along = 0, s2 = 0, rest2 = 0;
+        double along = 0, s2 = 0, rest2 = 0, closing = 0;
         for (int a = 0; a < 3; a++) along += (&c->x)[a]*m->normal[a];
+        for (int a = 0; a < 3; a++) closing += (m->velocity[a] - (&v->velocity[i].x)[a])*m->normal[a];
         along = isph_larger(along, 0);
         for (int a = 0; a < 3; a++) {
             const double rest = (&c->x)[a] - along*m->normal[a];
@@ -179,7 +183,8 @@ TOBI_FN double isph_gap(const isph_view *v, int64_t i, const tobi_float4 *c, dou
         const double narrow = isph_fade(sqrt(s2)/v->spacing, ISPH_GAP_SHUT, ISPH_GAP_FREE);
         const double towards = isph_fade(sqrt(rest2)*v->spacing, ISPH_GAP_GRADIENT_SHUT,
                                          ISPH_GAP_GRADIENT_FREE);
-        gap = isph_larger(gap, isph_clamp(4*m->share - 2, 0, 1)*narrow*towards);
+        const double kept = isph_fade(closing/(v->speed + 1e-30), ISPH_GAP_CLOSING, ISPH_GAP_AIR);
+        gap = isph_larger(gap, isph_clamp(4*m->share - 2, 0, 1)*narrow*towards*kept);
     }
     return gap*isph_fade(loss, ISPH_GAP_LOSS_SHUT, ISPH_GAP_LOSS_FREE);
 }

@@ -2,6 +2,7 @@
 #include "tobiuo/motion.h"
 #include "tobiuo/tobiuo.h"
 #include "calls.h"
+#include "world/world.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -382,6 +383,43 @@ static void a_round_post_that_turns_stirs_nothing(void **state)
     tobi_motion_free(motion);
 }
 
+/* A slab of water flies at a plate, 1.5 spacings away, and would arrive at 0.03 s: nothing happens before
+   half a spacing is left, and no energy comes from nowhere. It hit the plate at 0.013 s. */
+static void a_slab_flies_until_it_arrives(void **state)
+{
+    (void)state;
+    tobi_world_def w = make_def(0.4);
+    tobi_body_def plate = tobi_default_body_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def slab = tobi_default_fill_def();
+    tobi_world *world;
+    tobi_step_info info;
+    double momentum = 0, energy = INFINITY;
+    w.gravity[1] = 0;
+    w.domain_max[1] = 0.4;
+    w.time_step_max = 2e-4;
+    plate.name = "plate";
+    plate.box_min[0] = 0.05; plate.box_max[0] = 0.35;
+    plate.box_min[1] = 0.3; plate.box_max[1] = 0.34;
+    slab.box_min[0] = 0.1; slab.box_max[0] = 0.3;
+    slab.box_min[1] = 0.2; slab.box_max[1] = 0.285;
+    slab.velocity[1] = 0.5;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &slab, 1, &err));
+    OK(tobi_world_add_body(world, &plate, &err));
+    while (world->sim.time < 0.045) {
+        OK(tobi_world_step(world, 1, &info, &err));
+        if (momentum == 0) momentum = info.momentum[1];
+        if (world->sim.time < 0.02 && fabs(info.momentum[1]/momentum - 1) > 0.01)
+            fail_msg("momentum %g of %g at %g s", info.momentum[1], momentum, world->sim.time);
+        if (info.kinetic_energy > 1.01*energy)
+            fail_msg("kinetic energy %g J, it was %g", info.kinetic_energy, energy);
+        energy = fmin(energy, info.kinetic_energy);
+    }
+    assert_true(info.momentum[1] < 0.6*momentum);
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -397,6 +435,7 @@ int main(void)
         cmocka_unit_test(sides_carry_the_weight),
         cmocka_unit_test(sides_of_a_long_tank),
         cmocka_unit_test(a_round_post_that_turns_stirs_nothing),
+        cmocka_unit_test(a_slab_flies_until_it_arrives),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
