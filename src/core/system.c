@@ -113,11 +113,11 @@ static double opening_head(const tobi_system *s)
     return most;
 }
 
-/* All of a flow as a jet out of a place two spacings wide, which contracts to 0.61 of it (Kirchhoff 1869),
-   but at most TOBI_NARROWEST times as fast as the fastest that feeds it. */
+/* All of a flow as a jet one spacing wide: out of a place of two it contracts to 0.61 of it (Kirchhoff 1869),
+   and goes in one row. At most TOBI_NARROWEST times as fast as the fastest that feeds it. */
 static double narrow_speed(const tobi_system *s, double flow, double fastest)
 {
-    return fmin(flow/(0.61*pow(2*s->smoothing.spacing, s->box.dimension - 1)), TOBI_NARROWEST*fastest);
+    return fmin(flow/pow(s->smoothing.spacing, s->box.dimension - 1), TOBI_NARROWEST*fastest);
 }
 
 static double inlet_speed(const tobi_system *s)

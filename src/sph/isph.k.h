@@ -207,7 +207,7 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
                                          : 1 - isph_fade(loss, ISPH_GATE_BEGIN, ISPH_GATE_OPEN);
     const double gap = v->open && rule > 0 ? isph_gap(v, i, &gradient, loss) : 0;
     const double gate = v->open ? rule*(1 - gap) : 1 - isph_fade(loss, ISPH_CAVITY_BEGIN, ISPH_CAVITY_OPEN);
-    const double filled = v->weight*(1 + (double)main.w);
+    const double around = v->weight*(1 + (double)main.w), filled = around + gap*isph_larger(1 - around, 0);
     if (!(gate > 0)) {
         totals[0] += filled - 1;
         totals[1] += 1;
@@ -216,7 +216,7 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
     v->trace[i] = (float)trace;
     v->gate[i] = (float)gate;
     v->scale[i] = v->uniform_scale ? 1 : (float)isph_scale(v->dimension, trace);
-    v->concentration[i] = (float)(filled + gap*isph_larger(1 - filled, 0));
+    v->concentration[i] = (float)filled;
     v->concentration_gradient[i] = isph_weigh_gradient(v, gradient, trace);
     v->inverse[i] = isph_invert(m);
 }

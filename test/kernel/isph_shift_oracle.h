@@ -6,7 +6,7 @@ static void oracle_isph_shift(check *c, int64_t i, const sums *s)
 {
     const double full = 1 - loss_of(s), d = view.spacing;
     double x[3], along[3], size = 0, n2 = 0, at = 0;
-    const int surface = gate_of(i, s) > 0, fades = view.fades && !(view.last_link && view.last_link[i] >= 0);
+    const int surface = view.gate[i] > 0, fades = view.fades && !(view.last_link && view.last_link[i] >= 0);
     for (int a = 0; a < 3; a++) x[a] = surface && full < 0.6 ? 0 : -view.shifting*d*d*s->gradient_c[a];
     for (int a = 0; a < 3; a++) { n2 += s->normal[a]*s->normal[a]; at += x[a]*s->normal[a]; }
     for (int a = 0; a < 3; a++) {

@@ -72,11 +72,10 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     tobi_smoothing_init(&scaled, shape, dimension, pool.d, 2.5);
     kernel = sph_kernels_for(pool.exec.isa, shape);
     view = (isph_view){.count = count, .dimension = dimension, .open = !closed, .fades = !closed,
-                       .spacing = pool.d, .h = pool.h, .volume = c->volume, .weight = c->weight,
-                       .slope = c->slope,
-                       .shape = shape, .full = 2*c->rate, .inverse_h = (float)(1/pool.h), .density = 1000,
-                       .dt = 1e-3, .motion_dt = 2e-3, .way = 5e-4, .second_order = 1,
-                       .keeps_volume = 1, .shift_damping = 2,
+                       .speed = 4, .spacing = pool.d, .h = pool.h, .volume = c->volume, .weight = c->weight,
+                       .slope = c->slope, .shape = shape, .full = 2*c->rate,
+                       .inverse_h = (float)(1/pool.h), .density = 1000, .dt = 1e-3, .motion_dt = 2e-3,
+                       .way = 5e-4, .second_order = 1, .keeps_volume = 1, .shift_damping = 2,
                        .surface_row = 1.2, .surface_force = 1.1, .volume_gain = 0.1, .shifting = 0.5,
                        .keep = 0.9, .mean = 3, .carry = 0.4, .gain = 0.7,
                        .volume_sum = 1, .by_count = 1, .lattice_count = dimension == 3 ? 56 : 20,
@@ -247,14 +246,23 @@ static double loss_of(const sums *s)
 }
 static double clip(double x) { return fmin(fmax(x, 0), 1); }
 
-/* The face has the normal x: c_x > 0 says that neighbours are missing towards it. */
-static double gate_of(int64_t i, const sums *s)
+/* How surely it is a gap beside the body that i misses. The face has the normal x: c_x > 0 says that
+   neighbours are missing towards it. */
+static double gap_of(int64_t i, const sums *s)
 {
     const double *c = s->gradient_c, d = view.spacing, away = c[0] > 0 ? 0 : c[0],
                  rest = sqrt(away*away + c[1]*c[1] + c[2]*c[2]);
-    double gap = clip((0.25 - rest*d)/0.1)*clip((0.4 - loss_of(s))/0.1);
-    gap *= near_body[i] >= 0 ? clip((2.25 - mirror[near_body[i]].offset[0]/d)/0.5) : 0;
-    return view.open ? clip((loss_of(s) - 0.05)/0.1)*(1 - gap) : clip((loss_of(s) - 0.6)/0.2);
+    const isph_mirror *m = near_body[i] >= 0 ? &mirror[near_body[i]] : NULL;
+    double closing = 0;
+    if (!view.open || !m || !(loss_of(s) > 0.05)) return 0;
+    for (int a = 0; a < 3; a++) closing += (m->velocity[a] - (&view.velocity[i].x)[a])*m->normal[a];
+    return clip((0.25 - rest*d)/0.1)*clip((0.4 - loss_of(s))/0.1)*clip((2.25 - m->offset[0]/d)/0.5)*
+           clip((0.3 - closing/view.speed)/0.2);
+}
+
+static double gate_of(int64_t i, const sums *s)
+{
+    return view.open ? clip((loss_of(s) - 0.05)/0.1)*(1 - gap_of(i, s)) : clip((loss_of(s) - 0.6)/0.2);
 }
 
 static void oracle_isph_geometry(check *c, int64_t i, const sums *s)
@@ -266,7 +274,8 @@ static void oracle_isph_geometry(check *c, int64_t i, const sums *s)
     compare(c, view.trace[i], trace, 1);
     compare(c, view.gate[i], gate, 10);
     compare(c, view.scale[i], fmin(1.3, view.dimension/fmax(trace, 0.95*view.dimension)), 1);
-    compare(c, view.concentration[i], s->concentration, 1);
+    compare(c, view.concentration[i],
+            s->concentration + gap_of(i, s)*fmax(1 - s->concentration, 0), 10);
     for (int a = 0; a < 3; a++) compare(c, (&view.concentration_gradient[i].x)[a], grad[a], 1/view.h);
     compare(c, view.concentration_gradient[i].w*missing, fmax(0, view.dimension - trace), 1);
     /* B M = 1, or M where the determinant is small */
@@ -296,14 +305,14 @@ static void oracle_isph_gravity(check *c, int64_t i, const sums *s)
 
 static double excess_of(int64_t i, const sums *s)
 {
-    return 2*gate_of(i, s)*1.2*fmax(view.full - s->row, 0.5*loss_of(s)*view.full);
+    return 2*view.gate[i]*1.2*fmax(view.full - s->row, 0.5*loss_of(s)*view.full);
 }
 
 static double source_of(int64_t i, const sums *s)
 {
-    const double error = s->concentration - 1, left = view.open ? 0 : fmax(fmin(error, 0.02), -0.02);
-    const double e = fmax(error - left, gate_of(i, s) > 0 ? 0 : view.open ? -0.05 : -0.5);
-    return s->difference + (1 - gate_of(i, s))*s->rest + 0.5*view.density*view.invariant[i] -
+    const double error = view.concentration[i] - 1, left = view.open ? 0 : fmax(fmin(error, 0.02), -0.02);
+    const double e = fmax(error - left, view.gate[i] > 0 ? 0 : view.open ? -0.05 : -0.5);
+    return s->difference + (1 - view.gate[i])*s->rest + 0.5*view.density*view.invariant[i] -
            view.density/view.dt*s->divergence + view.density*0.1*e/(view.dt*view.motion_dt);
 }
 
