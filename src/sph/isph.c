@@ -30,6 +30,9 @@ static const double FULL_SHIFT_STEP = 0.2, SHIFT_AT_REST = 0.1;
    particles are disordered, and the more the farther they go in a step: at least, and per spacing. */
 static const double SHIFT_DAMPING = 2, SHIFT_DAMPING_OF_WAY = 15;
 
+/* Of the speed of a fall over a spacing, about: below it a gap that closes may as well be at rest. */
+static const double GAP_AT_REST = 0.025;
+
 static void launch(tobi_system *s, isph *m, tobi_kernel k, double *totals)
 {
     tobi_launch(&s->sim->exec, k, &m->solver.view, 0, s->particles.count, totals);
@@ -94,10 +97,16 @@ double isph_choose_dt(tobi_system *s)
    goes FULL_SHIFT_STEP spacings in a step. */
 static void choose_shift(const tobi_system *s, isph *m)
 {
-    m->solver.view.speed = fmax(m->memory.speed, s->sim->body_speed);
-    const double way = m->solver.view.speed*s->dt/s->smoothing.spacing;
+    const double speed = fmax(m->memory.speed, s->sim->body_speed), way = speed*s->dt/s->smoothing.spacing;
     m->solver.view.shifting = m->def.shifting*fmax(SHIFT_AT_REST, fmin(way/FULL_SHIFT_STEP, 1));
     m->solver.view.shift_damping = fmax(SHIFT_DAMPING, SHIFT_DAMPING_OF_WAY*way);
+}
+
+/* What the closing of a gap is measured by: liquid at rest stirs, which is no closing. */
+static double choose_gap_speed(const tobi_system *s, const isph *m)
+{
+    const double rest = GAP_AT_REST*s->smoothing.spacing/sph_gravity_dt(s);
+    return fmax(fmax(m->memory.speed, s->sim->body_speed), rest);
 }
 
 static void bind_soft(const tobi_system *s, isph_view *v)
@@ -121,6 +130,7 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     m->solver.view.held = NULL;
     m->solver.view.open = m->solver.view.fades = m->memory.vessel != SPH_VESSEL_FULL;
     m->solver.view.motion_dt = fmax(m->motion_dt, s->dt);
+    m->solver.view.gap_speed = choose_gap_speed(s, m);
     choose_shift(s, m);
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, clock, err));
     TOBI_TRY(isph_solver_bind(&m->solver, s, err));

@@ -183,7 +183,7 @@ TOBI_FN double isph_gap(const isph_view *v, int64_t i, const tobi_float4 *c, dou
         const double narrow = isph_fade(sqrt(s2)/v->spacing, ISPH_GAP_SHUT, ISPH_GAP_FREE);
         const double towards = isph_fade(sqrt(rest2)*v->spacing, ISPH_GAP_GRADIENT_SHUT,
                                          ISPH_GAP_GRADIENT_FREE);
-        const double kept = isph_fade(closing/(v->speed + 1e-30), ISPH_GAP_CLOSING, ISPH_GAP_AIR);
+        const double kept = isph_fade(closing/(v->gap_speed + 1e-30), ISPH_GAP_CLOSING, ISPH_GAP_AIR);
         gap = isph_larger(gap, isph_clamp(4*m->share - 2, 0, 1)*narrow*towards*kept);
     }
     return gap*isph_fade(loss, ISPH_GAP_LOSS_SHUT, ISPH_GAP_LOSS_FREE);

@@ -51,7 +51,7 @@ typedef struct isph_view {
     int second_order;                /* 1: the list is that of the middle of the step               */
     int keeps_volume;                /* 1: the source has eq. (6b)                                  */
     double volume_gain, shifting;    /* parameters                                                  */
-    double speed;                    /* m/s: of the fastest particle or body                        */
+    double gap_speed;                /* m/s: of the fastest particle or body, or of rest            */
     double shift_damping;            /* 1: the factor of eq. (10a)                                  */
     double keep;                     /* 1: share of the last pressure that a solve starts from       */
     double base;                     /* Pa: what it takes in place of the rest                       */

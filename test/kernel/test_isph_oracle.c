@@ -72,8 +72,8 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     tobi_smoothing_init(&scaled, shape, dimension, pool.d, 2.5);
     kernel = sph_kernels_for(pool.exec.isa, shape);
     view = (isph_view){.count = count, .dimension = dimension, .open = !closed, .fades = !closed,
-                       .speed = 4, .spacing = pool.d, .h = pool.h, .volume = c->volume, .weight = c->weight,
-                       .slope = c->slope, .shape = shape, .full = 2*c->rate,
+                       .gap_speed = 4, .spacing = pool.d, .h = pool.h, .volume = c->volume,
+                       .weight = c->weight, .slope = c->slope, .shape = shape, .full = 2*c->rate,
                        .inverse_h = (float)(1/pool.h), .density = 1000, .dt = 1e-3, .motion_dt = 2e-3,
                        .way = 5e-4, .second_order = 1, .keeps_volume = 1, .shift_damping = 2,
                        .surface_row = 1.2, .surface_force = 1.1, .volume_gain = 0.1, .shifting = 0.5,
@@ -257,7 +257,7 @@ static double gap_of(int64_t i, const sums *s)
     if (!view.open || !m || !(loss_of(s) > 0.05)) return 0;
     for (int a = 0; a < 3; a++) closing += (m->velocity[a] - (&view.velocity[i].x)[a])*m->normal[a];
     return clip((0.25 - rest*d)/0.1)*clip((0.4 - loss_of(s))/0.1)*clip((2.25 - m->offset[0]/d)/0.5)*
-           clip((0.3 - closing/view.speed)/0.2);
+           clip((0.3 - closing/view.gap_speed)/0.2);
 }
 
 static double gate_of(int64_t i, const sums *s)
