@@ -30,7 +30,8 @@ static const double FULL_SHIFT_STEP = 0.2, SHIFT_AT_REST = 0.1;
    particles are disordered, and the more the farther they go in a step: at least, and per spacing. */
 static const double SHIFT_DAMPING = 2, SHIFT_DAMPING_OF_WAY = 15;
 
-/* Of the speed of a fall over a spacing, about: below it a gap that closes may as well be at rest. */
+/* Spacings in the step that gravity allows, which is 0.1 sqrt(g d): a gap that closes more slowly may as well
+   be at rest. */
 static const double GAP_AT_REST = 0.025;
 
 static void launch(tobi_system *s, isph *m, tobi_kernel k, double *totals)
@@ -93,11 +94,17 @@ double isph_choose_dt(tobi_system *s)
     return fixed > 0 ? fixed : most > 0 ? fmin(dt, most) : dt;
 }
 
+/* m/s: of the fastest particle or body. */
+static double find_speed(const tobi_system *s, const isph *m)
+{
+    return fmax(m->memory.speed, s->sim->body_speed);
+}
+
 /* Still liquid needs less of the shift, which would stir it: all of it where the fastest particle or body
    goes FULL_SHIFT_STEP spacings in a step. */
 static void choose_shift(const tobi_system *s, isph *m)
 {
-    const double speed = fmax(m->memory.speed, s->sim->body_speed), way = speed*s->dt/s->smoothing.spacing;
+    const double way = find_speed(s, m)*s->dt/s->smoothing.spacing;
     m->solver.view.shifting = m->def.shifting*fmax(SHIFT_AT_REST, fmin(way/FULL_SHIFT_STEP, 1));
     m->solver.view.shift_damping = fmax(SHIFT_DAMPING, SHIFT_DAMPING_OF_WAY*way);
 }
@@ -105,8 +112,7 @@ static void choose_shift(const tobi_system *s, isph *m)
 /* What the closing of a gap is measured by: liquid at rest stirs, which is no closing. */
 static double choose_gap_speed(const tobi_system *s, const isph *m)
 {
-    const double rest = GAP_AT_REST*s->smoothing.spacing/sph_gravity_dt(s);
-    return fmax(fmax(m->memory.speed, s->sim->body_speed), rest);
+    return fmax(find_speed(s, m), GAP_AT_REST*s->smoothing.spacing/sph_gravity_dt(s));
 }
 
 static void bind_soft(const tobi_system *s, isph_view *v)

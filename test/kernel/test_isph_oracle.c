@@ -275,7 +275,7 @@ static void oracle_isph_geometry(check *c, int64_t i, const sums *s)
     compare(c, view.gate[i], gate, 10);
     compare(c, view.scale[i], fmin(1.3, view.dimension/fmax(trace, 0.95*view.dimension)), 1);
     compare(c, view.concentration[i],
-            s->concentration + gap_of(i, s)*fmax(1 - s->concentration, 0), 10);
+            s->concentration + gap_of(i, s)*fmax(1 - s->concentration, 0), 1);
     for (int a = 0; a < 3; a++) compare(c, (&view.concentration_gradient[i].x)[a], grad[a], 1/view.h);
     compare(c, view.concentration_gradient[i].w*missing, fmax(0, view.dimension - trace), 1);
     /* B M = 1, or M where the determinant is small */

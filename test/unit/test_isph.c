@@ -384,7 +384,7 @@ static void a_round_post_that_turns_stirs_nothing(void **state)
 }
 
 /* A slab of water flies at a plate, 1.5 spacings away, and would arrive at 0.03 s: nothing happens before
-   half a spacing is left, and no energy comes from nowhere. It hit the plate at 0.013 s. */
+   half a spacing is left, and no energy comes from nowhere. From 0.0138 s on it was drawn to the plate. */
 static void a_slab_flies_until_it_arrives(void **state)
 {
     (void)state;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "calls.h"
-#include "world/world.h"
+#include "scene_text.h"
 
 /* A jelly that a block of water flies against, without gravity; or, with it, one that falls into a pool. */
 static tobi_world *make_world(const char *method, int pool, int threads, double density)
@@ -411,33 +411,22 @@ static void a_drop_under_a_block(void **state)
     tobi_world_destroy(world);
 }
 
-/* A tank 0.4 m wide in 2-D with a solid that does not move. */
-static tobi_world *make_tank(const char *method, const double solid_box[4], const double water_box[4],
-                             double gravity, double rise)
+/* A tank 0.4 m wide in 2-D with a solid that does not move: places of solid and water, m, m/s2, m/s. */
+static tobi_world *make_tank(const char *method, const char *solid, const char *water, double gravity,
+                             double rise)
 {
-    tobi_world_def w = tobi_default_world_def();
-    tobi_mlsmpm_def fine = tobi_default_mlsmpm_def();
-    tobi_fluid_def fluid = tobi_default_fluid_def();
-    tobi_solid_def solid = tobi_default_solid_def();
-    tobi_fill_def water = tobi_default_fill_def(), wall = tobi_default_fill_def();
+    char text[1000];
     tobi_world *world;
-    w.method = method;
-    w.dimension = 2;
-    w.spacing = 0.01;
-    w.time_step_max = 1e-3;
-    w.domain_max[0] = 0.4;
-    w.domain_max[1] = 0.36;
-    w.gravity[1] = -gravity;
-    w.gravity[2] = 0;
-    solid.model = TOBI_STATIONARY;
-    fill_box(&water, water_box);
-    fill_box(&wall, solid_box);
-    water.velocity[1] = rise;
-    fine.spacing = 0.005;
-    OK(tobi_world_create(&w, NULL, &world, &err));
-    OK(tobi_world_use_solids(world, &fine, &err));
-    OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
-    OK(tobi_world_add_solid(world, &solid, &wall, 1, &err));
+    snprintf(text, sizeof text,
+             "{ \"method\": \"%s\", \"dimension\": 2, \"spacing\": 0.01, \"end_time\": 1,"
+             "\"time_step_max\": 1e-3, \"gravity\": [0, %g], \"mlsmpm\": { \"spacing\": 0.005 },"
+             "\"domain\": { \"min\": [0, 0], \"max\": [0.4, 0.36] },"
+             "\"solids\": [ { \"name\": \"wall\", \"model\": \"stationary\","
+             "\"fill\": [ { \"box\": { %s } } ] } ],"
+             "\"fluids\": [ { \"name\": \"water\","
+             "\"fill\": [ { \"velocity\": [0, %g], \"box\": { %s } } ] } ] }",
+             method, -gravity, solid, rise, water);
+    OK(start_scene(text, &world, &err));
     return world;
 }
 
@@ -457,7 +446,8 @@ static double push_solid(tobi_world *world, double from, double to)
 /* Its floor carries all water of a tank: by isph it carried 0.97 of it (decision 96). */
 static void water_weighs_on_a_soft_floor(void **state)
 {
-    const double floor[4] = { 0, 0, 0.4, 0.04 }, water[4] = { 0, 0.04, 0.4, 0.34 };
+    static const char floor[] = "\"min\": [0, 0], \"max\": [0.4, 0.04]",
+                      water[] = "\"min\": [0, 0.04], \"max\": [0.4, 0.34]";
     (void)state;
     for (int k = 2; k < METHODS; k++) {
         tobi_world *world = make_tank(methods[k], floor, water, 9.81, 0);
@@ -471,11 +461,11 @@ static void water_weighs_on_a_soft_floor(void **state)
 /* What a slab of water loses to a ceiling the ceiling gets: by isph it got 0.94 of it (decision 96). */
 static void a_slab_hits_a_soft_ceiling(void **state)
 {
-    const double ceiling[4] = { 0.03, 0.3, 0.37, 0.34 }, water[4] = { 0.1, 0.2, 0.3, 0.285 };
+    static const char ceiling[] = "\"min\": [0.03, 0.3], \"max\": [0.37, 0.34]",
+                      water[] = "\"min\": [0.1, 0.2], \"max\": [0.3, 0.285]";
     (void)state;
     for (int k = 2; k < METHODS; k++) {
         tobi_world *world = make_tank(methods[k], ceiling, water, 0, 0.5);
-        OK(tobi_world_start(world, &err));
         tobi_system_measure(&world->system[0]);
         const double before = world->system[0].info.momentum[1], got = push_solid(world, 0, 0.04);
         tobi_system_measure(&world->system[0]);
