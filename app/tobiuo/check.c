@@ -81,8 +81,10 @@ static double print_scene(const tobi_scene *scene, const tobi_world *world)
 static void print_size(const tobi_scene *scene, const tobi_run_size *size)
 {
     char bytes[32], *dir = results_path(scene, NULL), *objection = dir ? size_objection(size, dir) : NULL;
-    printf("outputs          %lld, every %g s: about %s in %.7g files\n", (long long)size->outputs,
-           tobi_scene_output_def(scene)->interval, bytes_text(size->bytes, bytes), size->files);
+    const double every = tobi_scene_output_def(scene)->interval;
+    const double left = remainder(tobi_scene_world_def(scene)->end_time, every);
+    printf("outputs          %lld, every %g s%s: about %s in %.7g files\n", (long long)size->outputs, every,
+           fabs(left) > 1e-9*every ? " and at the end" : "", bytes_text(size->bytes, bytes), size->files);
     if (objection) printf("note             %s\n", objection);
     free(objection);
     free(dir);

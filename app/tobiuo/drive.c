@@ -69,7 +69,8 @@ static int end_run(const tobi_world *world, tobi_run *run, const drive_options *
 {
     tobi_error err = { 0 };
     const int done = tobi_run_done(run, o->end);
-    tobi_status status = tobi_run_checkpoint(run, &err);
+    tobi_status status = done ? tobi_run_output_end(run, &err) : TOBI_OK;
+    if (status == TOBI_OK) status = tobi_run_checkpoint(run, &err);
     if (status == TOBI_OK) status = tobi_run_finish(run, done ? "complete" : "interrupted", &err);
     say_trouble(run, p);
     if (status != TOBI_OK) return complain("%s", err.text);

@@ -103,7 +103,28 @@ int64_t count_pictures(const char *dir, const char *view)
     }
 }
 
-/* s from one output to the next, in the mean; 0 if the table does not say. *outputs: how many there were. */
+static int compare_numbers(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The median: the last output may come sooner than the others, and a table may lack rows. */
+static double find_usual_step(const table *t, int column)
+{
+    const size_t count = t->rows - 1;
+    double *step = malloc(count*sizeof *step + 1), usual = 0;
+    for (size_t k = 0; step && k < count; k++)
+        step[k] = table_number(t, k + 1, column) - table_number(t, k, column);
+    if (step && count > 0) {
+        qsort(step, count, sizeof *step, compare_numbers);
+        usual = step[count/2];
+    }
+    free(step);
+    return usual;
+}
+
+/* s from one output to the next; 0 if the table does not say. *outputs: how many there were. */
 static double find_interval(const char *dir, int64_t *outputs)
 {
     table t = { 0 };
@@ -113,10 +134,8 @@ static double find_interval(const char *dir, int64_t *outputs)
     if (asprintf(&path, "%s/history.csv", dir) < 0) return 0;
     if (table_read(&t, path) == 0) {
         const int column = table_column(&t, "time");
-        const size_t last = t.rows - 1;
         *outputs = (int64_t)t.rows;
-        if (column >= 0 && t.rows > 1)
-            interval = (table_number(&t, last, column) - table_number(&t, 0, column))/(double)last;
+        if (column >= 0 && t.rows > 1) interval = find_usual_step(&t, column);
     }
     table_free(&t);
     free(path);

@@ -15,7 +15,8 @@
    DIR/checkpoints/             the last two states and the recorder's place in the files
    DIR/summary.json             totals
 
-   Output k happens at the time k interval exactly, the first at 0. Every file but the three tables
+   Outputs happen at the multiples of the interval exactly, the first at 0; tobi_run_output_end makes one at
+   the end besides, which stays when the run is resumed to a later end. Every file but the three tables
    appears whole or not at all; the tables grow by whole rows, and a resumed run cuts them back to
    its checkpoint. So a run that is killed at any moment can be resumed, and the files of run +
    resume equal those of one run, byte for byte, checkpoints too (except for the wall clock times in
@@ -38,7 +39,7 @@ typedef struct tobi_run tobi_run;
 /* What a run will write: an estimate, right within a factor of 1.5 where there are some thousand
    particles. */
 typedef struct tobi_run_size {
-    int64_t outputs;                /* from time 0 to the end                                   */
+    int64_t outputs;                /* from time 0 to the end, both included                    */
     double  files, bytes;           /* of all outputs and the last two checkpoints              */
 } tobi_run_size;
 
@@ -100,8 +101,11 @@ TOBI_API int tobi_run_done(const tobi_run *run, double end);
 TOBI_API tobi_status tobi_run_wait(tobi_run *run, tobi_error *err);
 
 /* Writes an output of the present state, beside the steps. tobi_run_step does it when it is due; call
-   it only when stepping the world without tobi_run_step, at the times k interval. */
+   it when stepping the world without tobi_run_step, at the times k interval. At another time it is one more,
+   and the lists have its time; those at the multiples stay. */
 TOBI_API tobi_status tobi_run_output(tobi_run *run, tobi_error *err);
+/* The same, if the last output is of an earlier time: at the end of a run, before the last checkpoint. */
+TOBI_API tobi_status tobi_run_output_end(tobi_run *run, tobi_error *err);
 /* Waits for the outputs and writes a checkpoint; the two newest are kept. None is written if the last
    one is of this step. */
 TOBI_API tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err);

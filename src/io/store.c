@@ -48,10 +48,16 @@ static quiet begin_quiet(void)
 
 static void end_quiet(quiet q) { H5Eset_auto2(H5E_DEFAULT, q.print, q.data); }
 
-/* Keeps the innermost reason HDF5 gives. */
+/* Keeps the innermost reason HDF5 gives. That of a disk goes on with the time of day, a line break, names and
+   addresses, and has the system's own words among them. */
 static herr_t keep_reason(unsigned n, const H5E_error2_t *entry, void *out)
 {
-    if (n == 0 && entry->desc) snprintf(out, 256, "%s", entry->desc);
+    static const char words[] = "error message = '";
+    if (n != 0 || !entry->desc) return 0;
+    const char *rest = strstr(entry->desc, ": time = "), *said = rest ? strstr(rest, words) : NULL;
+    const int length = rest ? (int)(rest - entry->desc) : (int)strlen(entry->desc);
+    said = said ? said + strlen(words) : "";
+    snprintf(out, 256, "%.*s%s%.*s", length, entry->desc, *said ? ": " : "", (int)strcspn(said, "'"), said);
     return 0;
 }
 

@@ -137,7 +137,7 @@ static tobi_status take_tracks(tobi_run *run, tobi_moment *m, tobi_error *err)
     for (int k = 0; k < run->view_count; k++) wanted |= run->view[k].def.paths;
     if (!wanted) return TOBI_OK;
     if (run->tracks.track_count == 0 && run->outputs > 0) {
-        run->tracks.time = tobi_record_time(run, run->outputs) - 0.5*run->output.interval;
+        run->tracks.time = tobi_record_time(run, run->outputs - 1);
         TOBI_TRY(tobi_tracks_read(run->dir, &run->tracks, err));
     }
     for (int b = 0; b < tobi_world_body_count(run->world); b++) {

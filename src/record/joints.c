@@ -34,9 +34,10 @@ tobi_status tobi_joints_open(tobi_run *run, bool continued, tobi_error *err)
             columns[count] = (tobi_csv_column){ names[count], values[v].unit };
             count++;
         }
+    const double now = tobi_world_time(run->world);
     if (status == TOBI_OK) columns[0] = (tobi_csv_column){ "time", "s" };
     if (status == TOBI_OK)
-        status = tobi_table_open(run, "joints.csv", continued, columns, count, &run->joints, err);
+        status = tobi_table_open(run, "joints.csv", continued, now, columns, count, &run->joints, err);
     free(columns);
     free(names);
     return status;

@@ -18,9 +18,10 @@ tobi_status tobi_lines_open(tobi_run *run, bool continued, tobi_error *err)
                      v ? "distance" : "tension");
             columns[count] = (tobi_csv_column){ names[count], v ? "m" : "N" };
         }
+    const double now = tobi_world_time(run->world);
     if (status == TOBI_OK) columns[0] = (tobi_csv_column){ "time", "s" };
     if (status == TOBI_OK)
-        status = tobi_table_open(run, "lines.csv", continued, columns, count, &run->lines, err);
+        status = tobi_table_open(run, "lines.csv", continued, now, columns, count, &run->lines, err);
     free(columns);
     free(names);
     return status;

@@ -36,6 +36,7 @@ tobi_status tobi_probes_open(tobi_run *run, bool continued, tobi_error *err)
     tobi_csv_column *columns = calloc((size_t)probes*MOST + 1, sizeof *columns);
     char (*names)[NAME] = calloc((size_t)probes*MOST + 1, sizeof *names);
     if (!run->sensor) run->sensor = calloc((size_t)probes*MOST, sizeof *run->sensor);
+    const double now = tobi_world_time(run->world);
     if (columns) columns[0] = (tobi_csv_column){ "time", "s" };
     for (int k = 0; columns && names && k < probes; k++) {
         tobi_probe_kind kind;
@@ -47,7 +48,7 @@ tobi_status tobi_probes_open(tobi_run *run, bool continued, tobi_error *err)
         }
     }
     tobi_status status = columns && names && run->sensor
-        ? tobi_table_open(run, "probes.csv", continued, columns, count, &run->probes, err)
+        ? tobi_table_open(run, "probes.csv", continued, now, columns, count, &run->probes, err)
         : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
     free(columns);
     free(names);

@@ -93,6 +93,12 @@ typedef struct tobi_trouble {
     bool fails, told;                     /* the last of the kind failed; one was told    */
 } tobi_trouble;
 
+/* An output at no multiple of the interval: its number, the multiple that comes next, its time in s. */
+typedef struct tobi_aside {
+    int64_t number, beat;
+    double time;
+} tobi_aside;
+
 struct tobi_run {
     tobi_world *world;
     tobi_output_def output;               /* fields is not used after creation       */
@@ -123,6 +129,9 @@ struct tobi_run {
 
     tobi_csv *history, *bodies, *solids, *probes, *lines, *joints;   /* NULL where the scene has none */
     int64_t outputs;                      /* taken so far = number of the next       */
+    pthread_mutex_t aside_lock;           /* of the next three, which the writer only reads */
+    tobi_aside *aside;                    /* those at no multiple of the interval, in order */
+    int64_t aside_count, aside_room;
     tobi_tally since, total;              /* since the last output; of the run       */
     tobi_body_tally *body_since;          /* one per body                            */
     tobi_solid_tally *solid_since;        /* one per solid                           */
@@ -136,6 +145,7 @@ struct tobi_run {
     char *told[TOBI_KINDS];
     int told_count;                       /* atomic                                  */
     int64_t checkpoint_step;              /* of the last checkpoint, -1 = none       */
+    int64_t checkpoint_outputs;           /* that it counts                          */
     double next_checkpoint;               /* s                                       */
 };
 
@@ -168,7 +178,7 @@ int tobi_trouble_write(tobi_run *run, char *text, size_t room);
 void tobi_trouble_free(tobi_run *run);
 
 /* record/tables.c: history.csv, bodies.csv and probes.csv. */
-/* Opens them: new, or continued after the rows up to the world's time. */
+/* Opens them: new, or continued after the rows up to the last output, or up to the world's time. */
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err);
 /* The rows of an output: made, and written. */
 tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
@@ -181,8 +191,8 @@ tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err);
 /* record/joints.c: joints.csv, likewise. */
 tobi_status tobi_joints_open(tobi_run *run, bool continued, tobi_error *err);
 tobi_status tobi_joints_write(tobi_run *run, double before, tobi_error *err);
-/* A table of the run: new, or continued after the rows up to the world's time. */
-tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued,
+/* A table of the run: new, or continued after the rows up to `time`. */
+tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued, double time,
                             const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err);
 enum { TOBI_TABLES = 6 };
 /* All tables, NULL where there is none. */
@@ -289,13 +299,22 @@ tobi_status tobi_state_load(tobi_run *run, bool *found, tobi_error *err);
 /* record/summary.c */
 tobi_status tobi_summary_write(tobi_run *run, const char *outcome, tobi_error *err);
 
-/* record.c */
-/* Outputs from time 0 to end. */
-int64_t tobi_record_count(double interval, double end);
 /* Seconds of a clock that never jumps. */
 double tobi_record_clock(void);
-/* Time of output k. */
-static inline double tobi_record_time(const tobi_run *run, int64_t k)
-{
-    return (double)k * run->output.interval;
-}
+
+/* record/times.c: when outputs are. */
+/* Whether t is `time` or later, to within rounding. */
+bool tobi_record_reaches(double t, double time);
+/* The first multiple of `every` after t; 0: never. */
+double tobi_record_next_after(double every, double t);
+/* Outputs from time 0 to end, both included. */
+int64_t tobi_record_count(double interval, double end);
+/* The end, moved onto the output time that it means: 3 x 0.1 is not 0.3. */
+double tobi_record_snap(double interval, double end);
+/* Time of output k, of the next one too; of one that is taken, on the writer's thread. */
+double tobi_record_time(const tobi_run *run, int64_t k);
+double tobi_record_time_taken(tobi_run *run, int64_t k);
+/* Output run->outputs is taken at time t; said again, if that fails. */
+tobi_status tobi_record_note_time(tobi_run *run, double t, tobi_error *err);
+struct json_t *tobi_record_times_to_json(const tobi_run *run);
+bool tobi_record_times_from_json(struct json_t *list, tobi_run *run);

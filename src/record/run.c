@@ -12,10 +12,6 @@
 #include <time.h>
 #include <unistd.h>
 
-/* What times may be off by, as a part of the time: far more than rounding, far less than the mean step
-   of any run that ends. */
-#define ROUNDING 1e-12
-
 double tobi_record_clock(void)
 {
     struct timespec now;
@@ -25,13 +21,7 @@ double tobi_record_clock(void)
 
 static double next_checkpoint_after(const tobi_run *run, double t)
 {
-    double every = run->output.checkpoint_interval;
-    return every > 0.0 ? (floor(t / every * (1.0 + ROUNDING)) + 1.0) * every : INFINITY;
-}
-
-int64_t tobi_record_count(double interval, double end)
-{
-    return (int64_t)fmin(fmax(floor(end / interval * (1.0 + ROUNDING)), 0.0), 1e18) + 1;
+    return tobi_record_next_after(run->output.checkpoint_interval, t);
 }
 
 /* What create and resume share: a run with its directory locked and the world started. */
@@ -58,7 +48,7 @@ static tobi_status open_run(tobi_world *world, const tobi_output_def *output, co
     run->world = world;
     run->output = *output;
     run->lock = -1;
-    run->dir_lock = run->trouble_lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
+    run->dir_lock = run->trouble_lock = run->aside_lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
     run->checkpoint_step = -1;
     run->begun = tobi_record_clock();
     TOBI_TRY(tobi_series_fields(run, err));
@@ -221,16 +211,14 @@ const char *tobi_run_note(const tobi_run *run) { return run ? run->note : ""; }
 
 const char *tobi_run_losses(const tobi_run *run) { return run->losses; }
 
-/* The end, moved onto the output time that it means: 3 x 0.1 is not 0.3. */
 static double snap_end(const tobi_run *run, double end)
 {
-    double nearest = round(end / run->output.interval) * run->output.interval;
-    return fabs(nearest - end) <= ROUNDING * end ? nearest : end;
+    return tobi_record_snap(run->output.interval, end);
 }
 
 static bool reached(const tobi_run *run, double t)
 {
-    return tobi_world_time(run->world) >= t * (1.0 - ROUNDING);
+    return tobi_record_reaches(tobi_world_time(run->world), t);
 }
 
 int tobi_run_done(const tobi_run *run, double end)
@@ -277,7 +265,8 @@ tobi_status tobi_run_output(tobi_run *run, tobi_error *err)
     TOBI_NEED(run, "run");
     tobi_snapshot *snapshot;
     TOBI_TRY(tobi_snapshot_take(run, &snapshot, err));
-    tobi_status status = tobi_writer_put(run->writer, snapshot, err);
+    tobi_status status = tobi_record_note_time(run, tobi_world_time(run->world), err);
+    if (status == TOBI_OK) status = tobi_writer_put(run->writer, snapshot, err);
     if (status != TOBI_OK) {
         tobi_snapshot_free(snapshot);
         return status;
@@ -287,6 +276,13 @@ tobi_status tobi_run_output(tobi_run *run, tobi_error *err)
     memset(run->body_since, 0, (size_t)tobi_world_body_count(run->world)*sizeof *run->body_since);
     memset(run->solid_since, 0, (size_t)tobi_world_solid_count(run->world)*sizeof *run->solid_since);
     return TOBI_OK;
+}
+
+tobi_status tobi_run_output_end(tobi_run *run, tobi_error *err)
+{
+    TOBI_NEED(run, "run");
+    const double last = tobi_record_time(run, run->outputs - 1);
+    return tobi_record_reaches(last, tobi_world_time(run->world)) ? TOBI_OK : tobi_run_output(run, err);
 }
 
 tobi_status tobi_run_wait(tobi_run *run, tobi_error *err) { return tobi_writer_wait(run->writer, err); }
@@ -305,7 +301,8 @@ tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err)
 {
     TOBI_NEED(run, "run");
     TOBI_TRY(tobi_writer_wait(run->writer, err));
-    if (run->world->sim.step == run->checkpoint_step) return TOBI_OK;
+    if (run->world->sim.step == run->checkpoint_step && run->outputs == run->checkpoint_outputs)
+        return TOBI_OK;
     TOBI_TRY(tobi_trouble_pass(run, TOBI_KIND_CHECKPOINTS, run->outputs, save(run, err), err));
     run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
     return TOBI_OK;
@@ -350,6 +347,7 @@ void tobi_run_free(tobi_run *run)
     tobi_trouble_free(run);
     free(run->body_since);
     free(run->solid_since);
+    free(run->aside);
     free(run->sensor);
     free(run->resolved);
     free(run->dir);

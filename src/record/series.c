@@ -265,7 +265,7 @@ static tobi_status list_output(tobi_run *run, int64_t number, tobi_error *err)
     for (int k = 0; series_at(run, k, &s); k++) {
         char file[128];
         snprintf(file, sizeof file, "%s/%s_%06lld.%s", s.folder, s.name, (long long)number, s.extension);
-        tobi_pvd_entry entry = { .time = tobi_record_time(run, number), .file = file, .name = s.name };
+        tobi_pvd_entry entry = { .time = tobi_record_time_taken(run, number), .file = file, .name = s.name };
         char *path = tobi_record_path(run->dir, "%s", file);
         const bool there = path && access(path, F_OK) == 0;
         free(path);

@@ -64,13 +64,13 @@ static tobi_body_tally mean_of_body(const tobi_body_tally *t)
     return m;
 }
 
-tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued,
+tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued, double time,
                             const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err)
 {
     char *path = tobi_record_path(run->dir, "%s", name);
     if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
     tobi_status status = TOBI_OK;
-    if (continued) status = tobi_csv_truncate(path, tobi_world_time(run->world), err);
+    if (continued) status = tobi_csv_truncate(path, time, err);
     if (status == TOBI_OK || status == TOBI_NOT_FOUND)
         status = tobi_csv_open(path, continued ? TOBI_CSV_APPEND : TOBI_CSV_NEW, DIGITS, columns,
                                count, csv, err);
@@ -121,13 +121,14 @@ const tobi_column *tobi_run_column(tobi_table table, int index)
 
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
 {
-    TOBI_TRY(tobi_table_open(run, "history.csv", continued, history_columns,
+    const double last = continued ? tobi_record_time(run, run->outputs - 1) : 0;
+    TOBI_TRY(tobi_table_open(run, "history.csv", continued, last, history_columns,
                         tables[TOBI_TABLE_HISTORY].count, &run->history, err));
     if (tobi_world_body_count(run->world) > 0)
-        TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, body_columns,
+        TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, last, body_columns,
                             tables[TOBI_TABLE_BODIES].count, &run->bodies, err));
     if (run->world->sim.soft.solids)
-        TOBI_TRY(tobi_table_open(run, "solids.csv", continued, solid_columns,
+        TOBI_TRY(tobi_table_open(run, "solids.csv", continued, last, solid_columns,
                             tables[TOBI_TABLE_SOLIDS].count, &run->solids, err));
     TOBI_TRY(tobi_lines_open(run, continued, err));
     TOBI_TRY(tobi_joints_open(run, continued, err));

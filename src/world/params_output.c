@@ -97,7 +97,8 @@ const tobi_param_table tobi_probe_table = {
 
 static const tobi_param output_rows[] = {
     { .key = "interval", REAL, AT(tobi_output_def, interval), .def = { 0.01 }, DURATION,
-      .unit = "s", .doc = "Simulated time between outputs, hit exactly." },
+      .unit = "s", .doc = "Simulated time between outputs, hit exactly. The end of the run has one, too, "
+                          "if it is no multiple." },
     { .key = "checkpoint_interval", REAL, AT(tobi_output_def, checkpoint_interval), DURATION,
       .unit = "s", .text = "end",
       .doc = "Simulated time between checkpoints; end writes one when the run ends." },

@@ -41,6 +41,9 @@ rm -rf plain/frames
 expect 1 "No such file" movie plain --out none.png
 check "without results and pictures there is no sheet" test ! -e none.png
 expect 0 "" run drop.json --out short --quiet --frames --until 0.001 --set output.interval=1
+check "the end of a run shorter than the interval has a picture" test -s short/frames/frame_000001.png
+rm -r short
+expect 0 "" run drop.json --out short --quiet --frames --set end_time=0
 rm -rf short/fluid* short/frames/frame_000001.png
 touch there.mp4
 expect 1 "there.mp4 exists; --force replaces it" movie "100%d run" --out there.mp4

@@ -71,7 +71,7 @@ class Checker:
         self.reference = folder / "reference"
         self.stopped = folder / "stopped"
         self.run(["run", "scene.json", "--out", self.reference, *FRAMES], must=0)
-        self.run(["run", "scene.json", "--out", self.stopped, *FRAMES, "--until", "0.015"], must=0)
+        self.run(["run", "scene.json", "--out", self.stopped, *FRAMES, "--until", "0.01"], must=0)
         end = json.loads((self.stopped / "resolved.json").read_text())
         end["end_time"] = 0.03
         (self.stopped / "resolved.json").write_text(json.dumps(end))

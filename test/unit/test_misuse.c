@@ -207,6 +207,7 @@ static void runs(void **state)
     assert_null(run);
     REFUSED(tobi_run_step(NULL, 1, NULL, &err), TOBI_INVALID, "run is NULL");
     REFUSED(tobi_run_output(NULL, &err), TOBI_INVALID, "run is NULL");
+    REFUSED(tobi_run_output_end(NULL, &err), TOBI_INVALID, "run is NULL");
     REFUSED(tobi_run_checkpoint(NULL, &err), TOBI_INVALID, "run is NULL");
     REFUSED(tobi_run_finish(NULL, "complete", &err), TOBI_INVALID, "tobi_run_finish: run is NULL");
     assert_string_equal(tobi_run_note(NULL), "");

@@ -18,12 +18,93 @@ static void test_outputs_are_multiples_of_the_interval(void **state)
     assert_int_equal(count_rows(at("multiples/history.csv")), 4);
     assert_true(exists(at("multiples/fluid/fluid_000003.vtu")));
     assert_false(exists(at("multiples/fluid/fluid_000004.vtu")));
-    step_until(run, 0.32); /* an end between outputs writes none */
+    step_until(run, 0.32); /* a stretch that ends between outputs writes none */
     assert_true(fabs(tobi_world_time(world) - 0.32) < 1e-12);
     assert_int_equal(count_rows(at("multiples/history.csv")), 4);
     assert_false(exists(at("multiples/bodies.csv")));
     tobi_run_free(run);
     tobi_world_destroy(world);
+}
+
+/* The times in fluid.pvd. */
+static void expect_times(const char *dir, int count, const double *times)
+{
+    size_t n;
+    char *list = read_file(at("%s/fluid.pvd", dir), &n), *next = list;
+    for (int k = 0; k < count; k++) {
+        next = strstr(next, "timestep=\"");
+        if (!next) fail_msg("%s has %d outputs, not %d", dir, k, count);
+        next += strlen("timestep=\"");
+        assert_float_equal(strtod(next, NULL), times[k], 1e-9);
+    }
+    assert_null(strstr(next, "timestep="));
+    free(list);
+    assert_int_equal(count_rows(at("%s/history.csv", dir)), count);
+}
+
+static tobi_run *resume(tobi_world *world, const tobi_output_def *output, const char *dir)
+{
+    tobi_run *run = NULL;
+    tobi_error err = { 0 };
+    if (tobi_run_resume(world, output, dir, &run, &err)) fail_msg("%s", err.text);
+    return run;
+}
+
+static void end_well(tobi_world *world, tobi_run *run)
+{
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_run_output_end(run, &err), TOBI_OK);
+    assert_int_equal(tobi_run_checkpoint(run, &err), TOBI_OK);
+    assert_int_equal(tobi_run_finish(run, "complete", &err), TOBI_OK);
+    tobi_run_free(run);
+    tobi_world_destroy(world);
+}
+
+/* The end of a run has an output, once; it stays when the run goes on, and the multiples stay even. */
+static void test_the_end_has_an_output(void **state)
+{
+    (void)state;
+    static const double times[] = { 0, 0.004, 0.008, 0.009, 0.012, 0.013, 0.0135, 0.016 };
+    static const double ends[] = { 0.009, 0.009, 0.013, 0.0135, 0.016 };
+    static const int counts[] = { 4, 4, 6, 7, 8 };
+    tobi_output_def output = make_output();
+    for (int k = 0; k < 5; k++) {
+        tobi_world *world = make_world(0, NULL);
+        tobi_run *run = k == 0 ? create(world, &output, at("ends"), 0) : resume(world, &output, at("ends"));
+        step_until(run, ends[k]);
+        end_well(world, run);
+        expect_times("ends", counts[k], times);
+    }
+    tobi_run_size size;
+    tobi_error err;
+    tobi_world *world = make_world(0, NULL);
+    assert_int_equal(tobi_run_estimate(world, &output, 0.009, &size, &err), TOBI_OK);
+    assert_int_equal(size.outputs, 4);
+    assert_int_equal(tobi_run_estimate(world, &output, 0.008, &size, &err), TOBI_OK);
+    assert_int_equal(size.outputs, 3);
+    tobi_world_destroy(world);
+}
+
+/* A run of an earlier version has none at its end: resumed, it gets one, and once. */
+static void test_an_end_without_output_gets_it(void **state)
+{
+    (void)state;
+    static const double times[] = { 0, 0.004, 0.006 };
+    tobi_output_def output = make_output();
+    tobi_error err = { 0 };
+    tobi_world *world = make_world(0, NULL);
+    tobi_run *run = create(world, &output, at("older"), 0);
+    step_until(run, 0.006);
+    assert_int_equal(tobi_run_checkpoint(run, &err), TOBI_OK);
+    tobi_run_free(run);
+    tobi_world_destroy(world);
+    for (int k = 0; k < 2; k++) {
+        world = make_world(0, NULL);
+        run = resume(world, &output, at("older"));
+        step_until(run, 0.006);
+        end_well(world, run);
+        expect_times("older", 3, times);
+    }
 }
 
 /* However long the interval is, the run ends at its end and no earlier. */
@@ -231,6 +312,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_outputs_are_multiples_of_the_interval),
+        cmocka_unit_test(test_the_end_has_an_output),
+        cmocka_unit_test(test_an_end_without_output_gets_it),
         cmocka_unit_test(test_long_intervals_do_not_end_a_run),
         cmocka_unit_test(test_body_names_become_file_names),
         cmocka_unit_test(test_bodies_and_the_list_of_all),
