@@ -176,7 +176,7 @@ typedef struct tobi_solid_def {
     double surface_friction;          /* 1, Coulomb, against solids that it is not bonded to          */
     int    liquid_friction;           /* tobi_friction, of fluids beside it                           */
     double damping;                   /* 1/s, velocities decay like exp(-damping t)                   */
-    const char *clamped_to;           /* name of the body that holds what starts in it or near; NULL = none */
+    const char *clamped_to;           /* bodies that hold what starts in them or near: "a,b"; NULL = none */
     int    seeding;                   /* tobi_seeding                                                 */
     int    bonded;                    /* 1: sticks to other bonded solids that it touches              */
     double color[3];                  /* RGB, 0 to 255, in pictures; all -1 = by its speed            */

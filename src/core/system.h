@@ -19,9 +19,18 @@ typedef struct tobi_solid {
     char name[64];
     tobi_solid_def def;             /* its density is the one used: from the mass, if that was given;
                                        clamped_to is only whether it is there */
-    char clamped_to[64];            /* body that holds it                                    */
-    int clamp;                      /* its number, from the start on; -1: none               */
+    char *clamped_to;               /* owned: names of the bodies that hold it, with commas  */
+    int *clamp;                     /* owned: their numbers, from the start on               */
+    int clamp_count;
 } tobi_solid;
+
+/* 1 if the body holds particles of the solid. */
+static inline int tobi_solid_is_clamped(const tobi_solid *s, int body)
+{
+    for (int k = 0; k < s->clamp_count; k++)
+        if (s->clamp[k] == body) return 1;
+    return 0;
+}
 
 typedef struct tobi_system {
     tobi_simulation *sim;           /* the world's                                           */

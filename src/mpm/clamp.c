@@ -44,20 +44,31 @@ int mpm_clamp_hides(const tobi_system *s, int64_t i)
     return place && place->w < 0;
 }
 
+/* Of the bodies that hold a solid the first that x lies in, else the first that it is near, else -1. */
+static int find_holder(const tobi_system *s, const tobi_solid *solid, const double x[3], int *inside)
+{
+    tobi_bvh_hit hit;
+    for (*inside = 1; *inside >= 0; --*inside)
+        for (int k = 0; k < solid->clamp_count; k++) {
+            const tobi_bvh *bvh = s->sim->bodies[solid->clamp[k]].bvh;
+            if (*inside ? tobi_bvh_inside(bvh, x) : tobi_bvh_closest(bvh, x, NEAR*s->smoothing.spacing, &hit))
+                return solid->clamp[k];
+        }
+    return -1;
+}
+
 void mpm_clamp_place(const tobi_system *s, int64_t i)
 {
     const tobi_particles *p = &s->particles;
-    const int body = s->solids[p->fluid[i]].clamp;
     tobi_float4 *place = mpm_fields_of(p)->clamp;
     if (!place) return;
     place[i] = (tobi_float4){0, 0, 0, 0};
+    const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+    double arm[3], m[3][3];
+    int inside;
+    const int body = find_holder(s, &s->solids[p->fluid[i]], x, &inside);
     if (body < 0) return;
     const tobi_body *b = &s->sim->bodies[body];
-    const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
-    const int inside = tobi_bvh_inside(b->bvh, x);
-    double arm[3], m[3][3];
-    tobi_bvh_hit hit;
-    if (!inside && !tobi_bvh_closest(b->bvh, x, NEAR*s->smoothing.spacing, &hit)) return;
     vec3_sub(arm, x, b->rigid.position);
     tobi_quaternion_matrix(b->rigid.orientation, m);
     for (int a = 0; a < 3; a++)

@@ -72,6 +72,7 @@ typedef struct tobi_contact_step {
     double margin;                   /* m, how far from touching a particle is looked at         */
     double rest_speed;               /* m/s, slower approaches do not bounce                     */
     int dimension;
+    const struct tobi_solid *solids;   /* of the particles; read where some are held              */
 } tobi_contact_step;
 
 /* Before a step. drift: m, how far particles have moved at most along an axis since they were last sorted; 0

@@ -280,6 +280,13 @@ static int touch_blade(const pose *at, const double x[3], const double local[3],
     return out->gap < at->step->margin;
 }
 
+/* 1 if the particle is held, by this body or by another that holds its solid: where beams of a frame overlap
+   it would be held in one and pushed out of the other. */
+static int is_held(const tobi_contact_step *step, const mpm_fields *f, int solid, int64_t i)
+{
+    return f->clamp[i].w != 0 && tobi_solid_is_clamped(&step->solids[solid], step->body);
+}
+
 /* Lists the particles of one chunk whose distance from the body's box is less than `far`. */
 static int64_t list_chunk(const pose *at, const tobi_particles *p, int64_t chunk, double far,
                           const double low[3], const double high[3], candidate *out)
@@ -291,7 +298,7 @@ static int64_t list_chunk(const pose *at, const tobi_particles *p, int64_t chunk
         double arm[3], local[3];
         int outside = 0;
         for (int a = 0; a < at->step->dimension; a++) outside |= x[a] < low[a] || x[a] > high[a];
-        if (outside || (f->clamp && fabsf(f->clamp[i].w) == (float)(1 + at->step->body))) continue;
+        if (outside || (f->clamp && is_held(at->step, f, p->fluid[i], i))) continue;
         approach(at, x, arm, local);
         const double clear = find_outside(at, x, local);
         if (clear < far) out[n++] = (candidate){(int32_t)i, 0, (float)(clear*(1 - 1e-6)), -1};

@@ -321,7 +321,8 @@ static tobi_status touch_bodies(tobi_system *s, mlsmpm *m, double *clock, tobi_e
     const tobi_contact_step contact = {
         .dt = s->dt, .before = m->memory.strain_dt, .whole = s->sim->dt, .system = s->number,
         .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
-        .margin = fmin(2*way, m->cell), .rest_speed = 4*sqrt(g)*s->dt, .dimension = s->box.dimension };
+        .margin = fmin(2*way, m->cell), .rest_speed = 4*sqrt(g)*s->dt, .dimension = s->box.dimension,
+        .solids = s->solids };
     TOBI_TRY(mpm_touch_bodies(&m->touch, s, &m->grid, &m->view, &contact, m->fresh ? 0 : m->memory.drift,
                               err));
     m->memory.drift += m->touch.far;

@@ -319,14 +319,15 @@ static void bind_text(const slot *s)
 {
     const char *given = json_string_value(s->value), *kept = given;
     int is_path = strcmp(s->row->unit, "path") == 0, is_list = strcmp(s->row->unit, "names") == 0;
-    int is_free = strcmp(s->row->unit, "text") == 0;
-    if (!given && !(is_list && json_is_array(s->value))) {
+    int is_free = strcmp(s->row->unit, "text") == 0, is_either = strcmp(s->row->unit, "name or names") == 0;
+    if (!given && !((is_list || is_either) && json_is_array(s->value))) {
         tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s",
                             tobi_json_kind(s->value),
                             is_path   ? "the path of a file"
                             : is_list ? "a list of names"
                             : is_free ? "a text"
-                                      : "a name");
+                            : is_either ? "a name or a list of names"
+                                        : "a name");
         return;
     }
     if (is_path) {
@@ -336,6 +337,9 @@ static void bind_text(const slot *s)
             return;
         }
         kept = tobi_texts_keep(s->binder->texts, join_path(s->binder->directory, given));
+    } else if (is_either && json_is_array(s->value) && json_array_size(s->value) == 0) {
+        tobi_source_mistake(s->binder->source, s->place, "is empty, must be a name or a list of names");
+        return;
     } else if (!given) {
         kept = tobi_texts_keep(s->binder->texts, join_names(s));
     } else if (is_free) {

@@ -171,7 +171,10 @@ const char *tobi_manual_type(const tobi_param *row)
     case TOBI_PARAM_VEC3: return row->positive ? "number or vector" : "vector";
     case TOBI_PARAM_BOOL: return "true or false";
     case TOBI_PARAM_CHOICE: return "word";
-    default: return strcmp(row->unit, "names") == 0 ? "list of names" : row->unit;
+    default:
+        return strcmp(row->unit, "names") == 0           ? "list of names"
+               : strcmp(row->unit, "name or names") == 0 ? "name or list of names"
+                                                         : row->unit;
     }
 }
 

@@ -111,19 +111,33 @@ static json_t *make_fields(void)
     return make_either(list, make_type("string"));
 }
 
+static json_t *make_name(void)
+{
+    json_t *schema = make_type("string");
+    json_object_set_new(schema, "minLength", json_integer(1));
+    json_object_set_new(schema, "maxLength", json_integer(100));
+    put_text(schema, "pattern", "^[^.+=@/\\\\:*?\"<>|,-][^/\\\\:*?\"<>|,]*$");
+    return schema;
+}
+
+static json_t *make_names(void)
+{
+    json_t *list = make_type("array");
+    json_object_set_new(list, "items", make_name());
+    json_object_set_new(list, "minItems", json_integer(1));
+    json_object_set_new(list, "uniqueItems", json_true());
+    return list;
+}
+
 static json_t *make_text(const tobi_param *row)
 {
     if (strcmp(row->unit, "method") == 0) return make_methods();
     if (strcmp(row->unit, "names") == 0) return make_fields();
+    if (strcmp(row->unit, "name or names") == 0) return make_either(make_name(), make_names());
+    if (strcmp(row->unit, "path") != 0 && strcmp(row->unit, "text") != 0) return make_name();
     json_t *schema = make_type("string");
     json_object_set_new(schema, "minLength", json_integer(1));
-    if (strcmp(row->unit, "path") == 0) return schema;
-    if (strcmp(row->unit, "text") == 0) {
-        json_object_set_new(schema, "maxLength", json_integer(200));
-        return schema;
-    }
-    json_object_set_new(schema, "maxLength", json_integer(100));
-    put_text(schema, "pattern", "^[^.+=@/\\\\:*?\"<>|,-][^/\\\\:*?\"<>|,]*$");
+    if (strcmp(row->unit, "text") == 0) json_object_set_new(schema, "maxLength", json_integer(200));
     return schema;
 }
 

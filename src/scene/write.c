@@ -19,9 +19,12 @@ static json_t *write_number(const tobi_param *row, const void *member)
     return row->text && whole == tobi_param_word(row) ? json_string(row->text) : json_integer(whole);
 }
 
-/* "a,b" as ["a", "b"]. */
-static json_t *write_names(const char *names)
+/* A list of names, "a,b", as ["a", "b"]; one of a row that may be a list, and any other text, as it is. */
+static json_t *make_text(const tobi_param *row, const char *names)
 {
+    const int is_list = strcmp(row->unit, "names") == 0 ||
+                        (strcmp(row->unit, "name or names") == 0 && strchr(names, ','));
+    if (!is_list) return json_string(names);
     json_t *list = json_array();
     int failed = !list;
     for (const char *c = names; *c;) {
@@ -47,9 +50,7 @@ json_t *tobi_write_member(const tobi_param *row, const void *def)
         return json_pack("[fff]", v[0], v[1], v[2]);
     case TOBI_PARAM_TEXT:
         memcpy(&text, member, sizeof text);
-        return !text                             ? NULL
-               : strcmp(row->unit, "names") == 0 ? write_names(text)
-                                                 : json_string(text);
+        return text ? make_text(row, text) : NULL;
     case TOBI_PARAM_CHOICE:
         memcpy(&whole, member, sizeof whole);
         text = tobi_choice_word(row->choices, whole, &length);

@@ -159,12 +159,14 @@ static void hide_held(const void *view, int64_t begin, int64_t end, double *tota
     const tobi_boundary_links *n = &sph_of(u->s)->links;
     (void)totals;
     for (int64_t k = begin; k < end; k++) {
-        const int body = soft->solids->solids[soft->solids->particles.fluid[k]].clamp;
+        const tobi_solid *solid = &soft->solids->solids[soft->solids->particles.fluid[k]];
         const tobi_double3 *at = &soft->position[k];
         const double x[3] = { at->x, at->y, at->z };
-        if (body < 0 || soft->size[k].volume == 0) continue;
-        hiding g = { { .s = u->s, .point = u->m->point + n->bins[body].item }, soft->size[k].volume };
-        tobi_boundary_take_facing(n, body, x, u->s->smoothing.h, hide_points, &g);
+        for (int c = 0; c < solid->clamp_count && soft->size[k].volume > 0; c++) {
+            const int body = solid->clamp[c];
+            hiding g = { { .s = u->s, .point = u->m->point + n->bins[body].item }, soft->size[k].volume };
+            tobi_boundary_take_facing(n, body, x, u->s->smoothing.h, hide_points, &g);
+        }
     }
 }
 
@@ -183,7 +185,7 @@ static int find_held(isph_solver *m, tobi_system *s)
     const held_view u = { s, m };
     int any = 0;
     for (int k = 0; soft->solids && k < soft->solids->solid_count; k++)
-        any |= soft->solids->solids[k].clamp >= 0;
+        any |= soft->solids->solids[k].clamp_count > 0;
     if (!any) return 0;
     const int64_t points = sph_of(s)->links.bins[s->sim->body_count].item;
     tobi_launch(m->exec, TOBI_HOST(clear_held, 0, 0), &u, 0, points, NULL);

@@ -1,8 +1,11 @@
-/* Solids that a rigid body holds (decision 83): which body, and whether it can. Drawback: scenes say the same
-   with line and column before the world is made. */
+/* Solids that rigid bodies hold (decisions 83, 97): which bodies, and whether they can. Drawback: scenes say
+   the same with line and column before the world is made. */
 #include "base/error.h"
 #include "mpm/clamp.h"
 #include "world/world.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* Why a body cannot hold a solid, NULL if it can. */
 static const char *find_reason(const tobi_body *b)
@@ -13,47 +16,77 @@ static const char *find_reason(const tobi_body *b)
     return NULL;
 }
 
-static tobi_status find_clamp(tobi_world *w, tobi_solid *solid, tobi_error *err)
+static tobi_status find_clamp(const tobi_world *w, tobi_solid *solid, const char *name, tobi_error *err)
 {
-    if (!solid->def.clamped_to) return TOBI_OK;
-    solid->clamp = tobi_world_find_body(w, solid->clamped_to);
-    if (solid->clamp < 0)
-        return tobi_fail(err, TOBI_NOT_FOUND, "solid '%s' is clamped to '%s', which is no body",
-                         solid->name, solid->clamped_to);
+    const int body = tobi_world_find_body(w, name);
+    if (body < 0)
+        return tobi_fail(err, TOBI_NOT_FOUND, "solid '%s' is clamped to '%s', which is no body", solid->name,
+                         name);
     if (!tobi_solid_uses(solid->def.model, "clamped_to"))
         return tobi_fail(err, TOBI_INVALID, "solid '%s' is clamped to '%s', but a solid of its model can not "
-                         "be held; all others than liquid and stationary can", solid->name,
-                         solid->clamped_to);
-    const char *reason = find_reason(&w->sim.bodies[solid->clamp]);
-    if (!reason) return TOBI_OK;
-    return tobi_fail(err, TOBI_UNSUPPORTED, "solid '%s' is clamped to '%s', which %s; a rigid body holds a "
-                     "solid", solid->name, solid->clamped_to, reason);
+                         "be held; all others than liquid and stationary can", solid->name, name);
+    if (tobi_solid_is_clamped(solid, body))
+        return tobi_fail(err, TOBI_INVALID, "solid '%s' is clamped to '%s' twice", solid->name, name);
+    const char *reason = find_reason(&w->sim.bodies[body]);
+    if (reason)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "solid '%s' is clamped to '%s', which %s; a rigid body holds "
+                         "a solid", solid->name, name, reason);
+    solid->clamp[solid->clamp_count++] = body;
+    return TOBI_OK;
+}
+
+/* Where the solid names its body number n. */
+static tobi_status at_name(const tobi_solid *solid, int number, int n, tobi_status status, tobi_error *err)
+{
+    if (!strchr(solid->clamped_to, ',')) return tobi_at_key(err, status, "solids[%d].clamped_to", number);
+    return tobi_at_key(err, status, "solids[%d].clamped_to[%d]", number, n);
+}
+
+static tobi_status find_clamps(const tobi_world *w, tobi_solid *solid, int number, tobi_error *err)
+{
+    char name[128];
+    size_t length, most = 1;
+    free(solid->clamp);
+    solid->clamp = NULL;
+    solid->clamp_count = 0;
+    if (!solid->clamped_to) return TOBI_OK;
+    for (const char *c = solid->clamped_to; *c; c++) most += *c == ',';
+    solid->clamp = malloc(most*sizeof *solid->clamp);
+    if (!solid->clamp) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %zu clamps", most);
+    for (const char *at = solid->clamped_to;; at += length + 1) {
+        length = strcspn(at, ",");
+        snprintf(name, sizeof name, "%.*s", (int)length, at);
+        TOBI_TRY(at_name(solid, number, solid->clamp_count, find_clamp(w, solid, name, err), err));
+        if (!at[length]) return TOBI_OK;
+    }
 }
 
 tobi_status tobi_world_find_clamps(tobi_world *w, tobi_error *err)
 {
     tobi_system *s = tobi_world_solids(w);
-    for (int k = 0; s && k < s->solid_count; k++) {
-        const tobi_status status = find_clamp(w, &s->solids[k], err);
-        TOBI_TRY(tobi_at_key(err, status, "solids[%d].clamped_to", k));
-    }
+    for (int k = 0; s && k < s->solid_count; k++) TOBI_TRY(find_clamps(w, &s->solids[k], k, err));
     return TOBI_OK;
+}
+
+/* Refuses a body, number n of those that the solid names, that holds none of its particles. */
+static tobi_status check_clamp(const tobi_world *w, int solid, int n, tobi_error *err)
+{
+    const tobi_system *s = tobi_world_solids(w);
+    const tobi_solid *d = &s->solids[solid];
+    for (int64_t i = 0; i < s->particles.count; i++)
+        if (s->particles.fluid[i] == solid && mpm_clamp_body(s, i) == d->clamp[n]) return TOBI_OK;
+    const tobi_status status =
+        tobi_fail(err, TOBI_INVALID, "solid '%s' is clamped to '%s', but none of its particles starts in "
+                  "that body or nearer than a spacing, %.3g m, to it%s", d->name,
+                  w->sim.bodies[d->clamp[n]].name, s->smoothing.spacing,
+                  n > 0 ? ", and belongs to no body named before" : "");
+    return at_name(d, solid, n, status, err);
 }
 
 tobi_status tobi_world_check_clamps(const tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = tobi_world_solids(w);
-    for (int k = 0; s && k < s->solid_count; k++) {
-        int64_t held = 0;
-        if (s->solids[k].clamp < 0) continue;
-        for (int64_t i = 0; i < s->particles.count; i++)
-            held += s->particles.fluid[i] == k && mpm_clamp_body(s, i) >= 0;
-        if (held > 0) continue;
-        const tobi_status status =
-            tobi_fail(err, TOBI_INVALID, "solid '%s' is clamped to '%s', but none of its particles starts in "
-                      "that body or nearer than a spacing, %.3g m, to it", s->solids[k].name,
-                      s->solids[k].clamped_to, s->smoothing.spacing);
-        return tobi_at_key(err, status, "solids[%d].clamped_to", k);
-    }
+    for (int k = 0; s && k < s->solid_count; k++)
+        for (int n = 0; n < s->solids[k].clamp_count; n++) TOBI_TRY(check_clamp(w, k, n, err));
     return TOBI_OK;
 }

@@ -51,13 +51,14 @@ static int meets(const tobi_system *s, const tobi_body *b, const double x[3], do
     return tobi_bvh_inside(b->bvh, x) || (reach > 0 && tobi_bvh_closest(b->bvh, x, reach, &hit));
 }
 
-/* Counts the points of a solid that a blade would start in: it may be thinner than their distance. */
+/* A solid fills the bodies that hold it. Counts its points that a blade would start in: that may be thinner
+   than their distance. */
 static int inside_body(const tobi_system *s, tobi_region *r, const double x[3])
 {
     int inside = 0;
     for (int k = 0; k < s->sim->body_count; k++) {
         const tobi_body *b = &s->sim->bodies[k];
-        if (s->solid_count > 0 && s->solids[r->owner].clamp == k) continue;    /* it fills its clamp */
+        if (s->solid_count > 0 && tobi_solid_is_clamped(&s->solids[r->owner], k)) continue;
         const int cuts = b->blade && s->solid_count > 0;
         if (!meets(s, b, x, cuts ? 0.25*s->smoothing.spacing : 0)) continue;
         inside = 1;

@@ -201,6 +201,28 @@ static tobi_status refuse_row(const char *path, int64_t row, const char *field, 
                      (long long)row, field);
 }
 
+static const void *find_loaded(tobi_system *s, const tobi_loaded_system *l, const char *name)
+{
+    for (int k = 0; k < TOBI_LOADED_FIELDS && l->field[k]; k++) {
+        void *data;
+        if (strcmp(tobi_particles_state(&s->particles, k, &data)->name, name) == 0) return l->field[k];
+    }
+    return NULL;
+}
+
+/* The first row that is held by a body to which the scene does not clamp its solid, -1 = none. */
+static int64_t find_foreign_clamp(tobi_system *s, const tobi_loaded_system *l)
+{
+    const tobi_float4 *clamp = find_loaded(s, l, "clamp");
+    const uint8_t *solid = find_loaded(s, l, "fluid");
+    for (int64_t i = 0; clamp && solid && i < l->count; i++) {
+        const double number = fabs((double)clamp[i].w);
+        const int known = number == floor(number) && number <= s->sim->body_count;
+        if (number != 0 && !(known && tobi_solid_is_clamped(&s->solids[solid[i]], (int)number - 1))) return i;
+    }
+    return -1;
+}
+
 static tobi_status check_fields(tobi_system *s, const char *path, const tobi_loaded_system *l,
                                 tobi_error *err)
 {
@@ -213,6 +235,10 @@ static tobi_status check_fields(tobi_system *s, const char *path, const tobi_loa
         if (bad < 0 && strcmp(field->name, "id") == 0) bad = find_twin(l->field[k], l->count);
         if (bad >= 0) return refuse_row(path, bad, field->name, err);
     }
+    const int64_t foreign = find_foreign_clamp(s, l);
+    if (foreign >= 0)
+        return tobi_fail(err, TOBI_INVALID, "%s: is of another scene: row %lld is held by a body to which "
+                         "this one does not clamp its solid", path, (long long)foreign);
     return TOBI_OK;
 }
 

@@ -132,9 +132,10 @@ static const tobi_param solid_rows[] = {
     { .key = "bonded", BOOL, AT(tobi_solid_def, bonded), .def = { 1 },
       .doc = "Whether it sticks to the other bonded solids that it touches; one that is not meets all "
              "others with contact and friction." },
-    { .key = "clamped_to", TEXT, AT(tobi_solid_def, clamped_to), .unit = "name",
-      .doc = "Body that holds the solid: its particles that start in the body, or nearer than a spacing to "
-             "it, go with it, and it feels their force." },
+    { .key = "clamped_to", TEXT, AT(tobi_solid_def, clamped_to), .unit = "name or names",
+      .doc = "Body or list of bodies that hold the solid: its particles that start in a body, or nearer than "
+             "a spacing to it, go with it, and it feels their force. Of several bodies the first named "
+             "holds a particle; one that it starts in goes before one that it is near." },
     { .key = "surface_friction", REAL, AT(tobi_solid_def, surface_friction), .def = { 0.3 }, FRICTION,
       .unit = "1",
       .doc = "Coulomb friction where it meets solids that it is not bonded to; of two the square root "

@@ -185,10 +185,14 @@ tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const
         tobi_mesh_free(&w->regions[--w->region_count].shape);
     TOBI_TRY(status);
     tobi_solid *solid = &s->solids[s->solid_count++];
-    solid->def = *def;
+    *solid = (tobi_solid){ .def = *def };
     snprintf(solid->name, sizeof solid->name, "%s", def->name ? def->name : "solid");
-    solid->clamp = -1;
-    snprintf(solid->clamped_to, sizeof solid->clamped_to, "%s", def->clamped_to ? def->clamped_to : "");
+    if (def->clamped_to) {
+        const size_t size = strlen(def->clamped_to) + 1;
+        solid->clamped_to = malloc(size);
+        if (!solid->clamped_to) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a solid");
+        memcpy(solid->clamped_to, def->clamped_to, size);
+    }
     if (def->mass > 0 && volume > 0) solid->def.density = def->mass/volume;
     char note[200] = "";
     if (s->method->accept) TOBI_TRY(s->method->accept(s, s->solid_count - 1, note, err));

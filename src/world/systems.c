@@ -123,6 +123,10 @@ void tobi_world_free_system(tobi_system *s)
 {
     if (s->state) s->method->free(s->state);
     free(s->def);
+    for (int k = 0; k < s->solid_count; k++) {
+        free(s->solids[k].clamped_to);
+        free(s->solids[k].clamp);
+    }
     free(s->solids);
     free(s->row_of);
     tobi_cells_free(&s->cells);

@@ -21,13 +21,27 @@ static const char text[] =
     "    { \"name\": \"c\", \"clamped_to\": \"knife\",\n"
     "      \"fill\": [ { \"box\": { \"min\": [0.4, 0.1], \"max\": [0.5, 0.2] } } ] },\n"
     "    { \"name\": \"d\", \"model\": \"liquid\", \"clamped_to\": \"plate\",\n"
-    "      \"fill\": [ { \"box\": { \"min\": [0.6, 0.1], \"max\": [0.7, 0.2] } } ] } ] }";
+    "      \"fill\": [ { \"box\": { \"min\": [0.6, 0.1], \"max\": [0.7, 0.2] } } ] },\n"
+    "    { \"name\": \"e\", \"clamped_to\": [\"plate\", \"gates\", \"gate\", \"plate\"],\n"
+    "      \"fill\": [ { \"box\": { \"min\": [0, 0.6], \"max\": [0.1, 0.7] } } ] },\n"
+    "    { \"name\": \"f\", \"clamped_to\": [],\n"
+    "      \"fill\": [ { \"box\": { \"min\": [0.2, 0.6], \"max\": [0.3, 0.7] } } ] },\n"
+    "    { \"name\": \"g\", \"clamped_to\": 7,\n"
+    "      \"fill\": [ { \"box\": { \"min\": [0.4, 0.6], \"max\": [0.5, 0.7] } } ] },\n"
+    "    { \"name\": \"h\", \"clamped_to\": \"plate,gate\",\n"
+    "      \"fill\": [ { \"box\": { \"min\": [0.6, 0.6], \"max\": [0.7, 0.7] } } ] } ] }";
 
 static const char *const expected[] = {
     ":7:44: solids[0].clamped_to: \"plat\" is no body of the scene; did you mean \"plate\"?",
     ":9:34: solids[1].clamped_to: \"gate\" is absent for a time; a rigid body holds a solid",
     ":11:34: solids[2].clamped_to: \"knife\" is a blade, which cuts solids; a rigid body holds a solid",
     "solids[3].clamped_to: is nothing that this model knows",
+    ":15:44: solids[4].clamped_to[1]: \"gates\" is no body of the scene; did you mean \"gate\"?",
+    ":15:53: solids[4].clamped_to[2]: \"gate\" is absent for a time; a rigid body holds a solid",
+    ":15:61: solids[4].clamped_to[3]: \"plate\" is named twice",
+    ":17:34: solids[5].clamped_to: is empty, must be a name or a list of names",
+    ":19:34: solids[6].clamped_to: is a number, must be a name or a list of names",
+    ":21:34: solids[7].clamped_to: is not usable as a name",
 };
 
 static void every_mistake_is_told(void **state)

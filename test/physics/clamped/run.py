@@ -13,7 +13,8 @@ Timoshenko w L^4/(8 E I) + w L^2/(2 k G A), k = 5/6: 0.380 m. The surface of the
 beside them. Rod: reaches from the middle of a hub of 0.2 m to 0.6 m, E = 1e6 Pa, turns once per second. Force on the hub
 rho h w^2 R^2/2, stretch of its free part rho w^2/(2 E) (R^2 L - (R^3 - r^3)/3); means over ten swings. Weight: a free body of
 100 kg/m hangs on a bar between it and a body that stands, E = 1e6 Pa, 1 m/s2, and is let go. Sinking (M + m/2) g L/(E A), period
-2 pi L/(b c) with b tan b = m/M, where M is all below the free part of the bar, of mass m. The bar is two solids, one per body.
+2 pi L/(b c) with b tan b = m/M, where M is all below the free part of the bar, of mass m. The bar is one solid, which both bodies
+hold, or two, one per body.
 Raft: a free body of 500 kg/m3, 0.2 m x 0.04 m, holds a slab of 200 kg/m3 that reaches 0.05 m below it. Both have the draft of
 their weight.""")
 
@@ -70,7 +71,7 @@ def rod(across):
             mean(reach)/(1000*turn**2/(2*modulus)*(R*R*(R - r) - (R**3 - r**3)/3)))
 
 
-def weight(across, density):
+def weight(across, density, parts):
     """Sinking and period of the weight over those of the theory."""
     width, modulus, L, g = 0.1, 1e6, 0.55, 1.0
     M, m, area = 0.02*density + 1000*width*0.05, 1000*width*L, width
@@ -80,23 +81,24 @@ def weight(across, density):
         low, high = (b, high) if b*math.tan(b) < m/M else (low, b)
     period = 2*math.pi*L/(b*math.sqrt(modulus/1000))
     bar = {"density": 1000, "youngs_modulus": modulus, "poissons_ratio": 0}
-    out = case.solids(f"weight_{across}_{density}", {
+    solids = [{"name": "bar", "clamped_to": ["ceiling", "weight"], **bar,
+               "fill": [{"box": {"min": [-width/2, 0.1], "max": [width/2, 0.75]}}]}]
+    if parts == 2:
+        solids = [{"name": name, "clamped_to": body, **bar, "fill": [{"box": {"min": [-width/2, low], "max": [width/2, high]}}]}
+                  for name, body, low, high in (("upper", "ceiling", 0.4, 0.75), ("lower", "weight", 0.1, 0.4))]
+    out = case.solids(f"weight_{across}_{density}_{parts}", {
         "domain": {"min": [-0.2, -0.1], "max": [0.2, 0.9]}, "gravity": [0, -g], "spacing": width/across/2,
         "end_time": 6*period,
         "bodies": [{"name": "ceiling", "box": {"min": [-0.1, 0.7], "max": [0.1, 0.8]}},
                    {"name": "weight", "box": {"min": [-0.1, 0.05], "max": [0.1, 0.15]}, "density": density,
                     "dynamics": "free"}],
-        "solids": [{"name": "upper", "clamped_to": "ceiling", **bar,
-                    "fill": [{"box": {"min": [-width/2, 0.4], "max": [width/2, 0.75]}}]},
-                   {"name": "lower", "clamped_to": "weight", **bar,
-                    "fill": [{"box": {"min": [-width/2, 0.1], "max": [width/2, 0.4]}}]}],
-        "output": {"interval": period/50, "fields": ["rest_position"]}})
+        "solids": solids, "output": {"interval": period/50, "fields": ["rest_position"]}})
     table = read_table(out/"bodies.csv")
     rows = [k for k, name in enumerate(table["name"]) if name == "weight"]
     t, y = [table["time"][k] for k in rows], [table["position_y"][k] for k in rows]
     middle = 0.5*(max(y) + min(y))
     up = [t[k] + (t[k + 1] - t[k])*(middle - y[k])/(y[k + 1] - y[k]) for k in range(len(y) - 1) if y[k] < middle <= y[k + 1]]
-    case.plot(f"weight on {across} cells, density {density}", "t, s", "height, m", [("centre", t, y, False)])
+    case.plot(f"weight on {across} cells, density {density}, solids {parts}", "t, s", "height, m", [("centre", t, y, False)])
     return (y[0] - middle)/((M + m/2)*g*L/(modulus*area)), (up[-1] - up[0])/(len(up) - 1)/period
 
 
@@ -130,9 +132,9 @@ for across in case.pick([4], [4, 8]):
     force, stretch = rod(across)
     case.figure(f"rod, {across} cells high: force over m w^2 r", force, "1 within 0.01", abs(force - 1) <= 0.01)
     case.figure(f"rod, {across} cells high: stretch over theory", stretch, "1 within 0.02", abs(stretch - 1) <= 0.02)
-for across, density in case.pick([(4, 5000)], [(4, 5000), (8, 5000), (8, 500)]):
-    sinking, period = weight(across, density)
-    text = f"weight of {density} kg/m3, {across} cells wide"
+for across, density, parts in case.pick([(4, 5000, 1)], [(4, 5000, 1), (8, 5000, 1), (8, 5000, 2), (8, 500, 1)]):
+    sinking, period = weight(across, density, parts)
+    text = f"weight of {density} kg/m3, {across} cells wide, bar of {parts} solid{'s'*(parts - 1)}"
     case.figure(f"{text}: sinking over theory", sinking, "1 within 0.02", abs(sinking - 1) <= 0.02)
     case.figure(f"{text}: period over theory", period, "1 within 0.02", abs(period - 1) <= 0.02)
 for method in case.pick([], ["dfsph", "isph"]):
