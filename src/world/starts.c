@@ -85,10 +85,26 @@ static tobi_status note_compression(tobi_world *w, tobi_error *err)
     return tobi_world_add_notes(w, "fluid", s->fluid[0].name, text, err);
 }
 
+/* Angles of contact where no free surface has tension; 90 degrees, the default, asks for nothing. */
+static tobi_status note_contact_angles(tobi_world *w, tobi_error *err)
+{
+    static const char text[] = "does nothing: no fluid has a surface_tension\n";
+    const tobi_system *s = &w->system[0];
+    for (int f = 0; f < s->fluid_count; f++)
+        if (s->fluid[f].tension > 0) return TOBI_OK;
+    if (w->sim.def.contact_angle != 90)
+        TOBI_TRY(tobi_world_add_notes(w, "world", "domain.contact_angle", text, err));
+    for (int k = 0; k < w->sim.body_count; k++)
+        if (fabs(w->sim.bodies[k].contact_cosine) > 1e-9)
+            TOBI_TRY(tobi_world_add_notes(w, "contact_angle of", w->sim.bodies[k].name, text, err));
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err)
 {
     if (w->system[0].fluid_count == 0) return TOBI_OK;
     for (int k = 0; k < w->sim.body_count; k++) TOBI_TRY(note_jerk(w, &w->sim.bodies[k], err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(note_gap(w, &w->regions[k], err));
+    TOBI_TRY(note_contact_angles(w, err));
     return note_compression(w, err);
 }

@@ -192,6 +192,28 @@ static void compression_is_told(void **state)
     }
 }
 
+/* A contact angle is of a free surface with tension; 90 degrees says nothing. */
+static void angles_without_tension_are_told(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        tobi_world *world;
+        char text[700];
+        const double angle = k == 2 ? 90 : 60;
+        snprintf(text, sizeof text, "{ \"dimension\": 2, \"spacing\": 0.1, \"end_time\": 1, "
+                 "\"domain\": { \"min\": [0, 0], \"max\": [1, 1], \"contact_angle\": %g }, "
+                 "\"gravity\": [0, -9.81], \"fluids\": [ { \"name\": \"water\", \"surface_tension\": %s, "
+                 "\"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 0.5] } } ] } ], "
+                 "\"bodies\": [ { \"name\": \"cup\", \"contact_angle\": %g, \"box\": { "
+                 "\"min\": [0.3, 0.3], \"max\": [0.6, 0.6] } } ] }", angle, k == 1 ? "0.07" : "\"none\"",
+                 angle);
+        OK(start_scene(text, &world, &err));
+        assert_int_equal(count_notes(world, "world 'domain.contact_angle': does nothing"), k == 0);
+        assert_int_equal(count_notes(world, "contact_angle of 'cup': does nothing: no"), k == 0);
+        tobi_world_destroy(world);
+    }
+}
+
 /* A box in the dry, on the floor before a dam or on a shelf behind a gate: below the level, not in water. */
 static void the_dry_feels_no_water(void **state)
 {
@@ -243,6 +265,7 @@ int main(void)
         cmocka_unit_test(water_in_gaps_presses),
         cmocka_unit_test(restless_starts_are_told),
         cmocka_unit_test(compression_is_told),
+        cmocka_unit_test(angles_without_tension_are_told),
         cmocka_unit_test(the_dry_feels_no_water),
         cmocka_unit_test(what_turns_about_its_axis_is_not_told),
         cmocka_unit_test(spray_has_a_large_surface),
