@@ -100,8 +100,24 @@ static tobi_status note_contact_angles(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Contacts hold a solid at the surface of a body; what lies deeper than that in one that comes back meets
+   none. */
+static tobi_status note_returns(tobi_world *w, tobi_error *err)
+{
+    char text[200];
+    for (int k = 0; tobi_world_solid_count(w) > 0 && k < w->sim.body_count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        if (!(b->absent[1] > 0)) continue;
+        snprintf(text, sizeof text, "comes back at %.4g s: a solid that lies in it then is not pushed "
+                 "out; let it come by a motion, if one may\n", b->absent[1]);
+        TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err)
 {
+    TOBI_TRY(note_returns(w, err));
     if (w->system[0].fluid_count == 0) return TOBI_OK;
     for (int k = 0; k < w->sim.body_count; k++) TOBI_TRY(note_jerk(w, &w->sim.bodies[k], err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(note_gap(w, &w->regions[k], err));

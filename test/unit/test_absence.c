@@ -156,6 +156,29 @@ static void a_thick_body_comes_back_into_water(void **state)
     }
 }
 
+/* Solids are not pushed out of a body that comes back, and who has some is told. */
+static void what_comes_back_into_solids_is_told(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        tobi_error err;
+        tobi_world *world = make_tank("dfsph", 0.1);
+        tobi_solid_def s = tobi_default_solid_def();
+        tobi_fill_def fill = tobi_default_fill_def();
+        int told = 0;
+        s.name = "jelly";
+        fill.box_min[0] = 0.2; fill.box_max[0] = 0.3; fill.box_max[1] = 0.1;
+        const tobi_body_def gate = make_gate(0.1, k == 1 ? 0 : 0.2);
+        if (k < 2) assert_int_equal(tobi_world_add_solid(world, &s, &fill, 1, &err), TOBI_OK);
+        assert_int_equal(tobi_world_add_body(world, &gate, &err), TOBI_OK);
+        assert_int_equal(tobi_world_start(world, &err), TOBI_OK);
+        for (int n = 0; tobi_world_note(world, n); n++)
+            told += strstr(tobi_world_note(world, n), "comes back at 0.2 s: a solid that lies in it") != NULL;
+        assert_int_equal(told, k == 0);
+        tobi_world_destroy(world);
+    }
+}
+
 /* A block that rests on a shelf falls when the shelf is taken away, and lies on the floor. */
 static void a_shelf_is_taken_away(void **state)
 {
@@ -263,6 +286,7 @@ int main(void)
         cmocka_unit_test(a_gate_is_taken_away),
         cmocka_unit_test(a_body_comes_back),
         cmocka_unit_test(a_thick_body_comes_back_into_water),
+        cmocka_unit_test(what_comes_back_into_solids_is_told),
         cmocka_unit_test(a_shelf_is_taken_away),
         cmocka_unit_test(a_restart_is_the_same),
         cmocka_unit_test(what_cannot_be_absent_is_refused),
