@@ -21,6 +21,7 @@ void mpm_clamp_free(mpm_clamp *c)
     free(c->held);
     free(c->node);
     free(c->weight);
+    for (int k = 0; k < 3; k++) free(c->place[k]);
     free(c->first);
     free(c->velocity);
     memset(c, 0, sizeof *c);
@@ -57,6 +58,48 @@ static int find_holder(const tobi_system *s, const tobi_solid *solid, const doub
     return -1;
 }
 
+/* Newton's method; eight rounds are plenty for what is a shape. */
+enum { ROUNDS = 8 };
+static const double EXACT = 1e-7, ARM = 1e-3;      /* spacings */
+
+/* The place at rest, about the centre, that the motion of a body takes to x at the start. What it finds is
+   the caller's to check. */
+static void find_rest(const tobi_system *s, const tobi_body *b, const double x[3], tobi_float4 *out)
+{
+    const double arm = ARM*s->smoothing.spacing;
+    double rest[4][3], now[4][3], m[9], inverse[9], off[3];
+    for (int a = 0; a < 3; a++) rest[0][a] = x[a] + b->lower[a];
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int k = 1; k < 4; k++)
+            for (int a = 0; a < 3; a++) rest[k][a] = rest[0][a] + (a == k - 1 ? arm : 0);
+        const tobi_status status =
+            tobi_body_ask_motion(b, s->sim->time, 4, (const double (*)[3])rest, now, NULL);
+        if (status != TOBI_OK) break;
+        for (int a = 0; a < 3; a++) {
+            off[a] = now[0][a] - b->lower[a] - x[a];
+            for (int k = 0; k < 3; k++) m[3*a + k] = (now[1 + k][a] - now[0][a])/arm;
+        }
+        if (vec3_dot(off, off) < pow(EXACT*s->smoothing.spacing, 2) || !tobi_rigid_invert(m, inverse)) break;
+        for (int a = 0; a < 3; a++) rest[0][a] -= vec3_dot(inverse + 3*a, off);
+    }
+    for (int a = 0; a < 3; a++) (&out->x)[a] = (float)(rest[0][a] - b->rest.centre[a]);
+}
+
+tobi_status mpm_clamp_find_stray(const tobi_system *s, int64_t i, double *stray, tobi_error *err)
+{
+    const tobi_float4 place = *place_of(s, i);
+    const tobi_body *b = &s->sim->bodies[mpm_clamp_body(s, i)];
+    double rest[1][3], now[1][3], square = 0;
+    *stray = 0;
+    if (!b->deforms) return TOBI_OK;
+    for (int a = 0; a < 3; a++) rest[0][a] = b->rest.centre[a] + (double)(&place.x)[a];
+    TOBI_TRY(tobi_body_ask_motion(b, s->sim->time, 1, (const double (*)[3])rest, now, err));
+    for (int a = 0; a < s->box.dimension; a++)
+        square += pow(now[0][a] - b->lower[a] - (&s->particles.position[i].x)[a], 2);
+    *stray = sqrt(square);
+    return TOBI_OK;
+}
+
 void mpm_clamp_place(const tobi_system *s, int64_t i)
 {
     const tobi_particles *p = &s->particles;
@@ -73,6 +116,7 @@ void mpm_clamp_place(const tobi_system *s, int64_t i)
     tobi_quaternion_matrix(b->rigid.orientation, m);
     for (int a = 0; a < 3; a++)
         (&place[i].x)[a] = (float)(m[0][a]*arm[0] + m[1][a]*arm[1] + m[2][a]*arm[2]);
+    if (b->deforms) find_rest(s, b, x, &place[i]);
     place[i].w = (float)(inside ? -1 - body : 1 + body);
 }
 
@@ -91,10 +135,16 @@ static tobi_status reserve(mpm_clamp *c, int bodies, int64_t count, tobi_error *
     free(c->held);
     free(c->node);
     free(c->weight);
+    int failed = 0;
+    for (int k = 0; k < 3; k++) {
+        free(c->place[k]);
+        c->place[k] = malloc((size_t)count*sizeof *c->place[k]);
+        failed |= !c->place[k];
+    }
     c->held = malloc((size_t)count*sizeof *c->held);
     c->node = malloc((size_t)count*MPM_FELT*sizeof *c->node);
     c->weight = malloc((size_t)count*MPM_FELT*sizeof *c->weight);
-    c->room = c->held && c->node && c->weight ? count : 0;
+    c->room = !failed && c->held && c->node && c->weight ? count : 0;
     return c->room ? TOBI_OK
                    : tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld held particles", (long long)count);
 }
@@ -122,8 +172,9 @@ static tobi_status list_held(mpm_clamp *c, const tobi_system *s, tobi_error *err
     return TOBI_OK;
 }
 
-/* Where a body is now, and at the end of the step or substep: centre, and rest axes to the domain's. */
-typedef struct poses { double centre[2][3], matrix[2][3][3]; int moves; } poses;
+/* Where a body is now, and at the end of the step or substep: centre, and rest axes to the domain's. Where
+   one that deforms has its held particles is in mpm_clamp.place. */
+typedef struct poses { double centre[2][3], matrix[2][3][3]; int moves, deforms; } poses;
 
 /* What the loop over the held particles of a body needs. */
 typedef struct holding {
@@ -141,16 +192,45 @@ static tobi_status find_poses(tobi_system *s, tobi_body *b, poses *at, tobi_erro
     tobi_rigid *r = &b->rigid;
     double position[3], orientation[4];
     at->moves = r->kind != TOBI_PRESCRIBED;
+    at->deforms = b->deforms;
     memcpy(position, r->position, sizeof position);
     memcpy(orientation, r->orientation, sizeof orientation);
     memcpy(at->centre[0], r->position, sizeof position);
     tobi_quaternion_matrix(r->orientation, at->matrix[0]);
-    if (!at->moves) TOBI_TRY(tobi_body_place_within(b, s->sim->time, s->sim->way + s->dt, 0, err));
+    if (!at->moves && !at->deforms)
+        TOBI_TRY(tobi_body_place_within(b, s->sim->time, s->sim->way + s->dt, 0, err));
     memcpy(at->centre[1], r->position, sizeof position);
     tobi_quaternion_matrix(r->orientation, at->matrix[1]);
     memcpy(r->position, position, sizeof position);
     memcpy(r->orientation, orientation, sizeof orientation);
     return TOBI_OK;
+}
+
+/* Asks a motion where it has the held particles of a body that deforms. */
+static tobi_status ask_places(mpm_clamp *c, const tobi_system *s, int body, tobi_error *err)
+{
+    const tobi_body *b = &s->sim->bodies[body];
+    const mpm_fields *f = mpm_fields_of(&s->particles);
+    const int64_t first = c->first[body], count = c->first[body + 1] - first;
+    for (int64_t n = first; n < first + count; n++)
+        for (int a = 0; a < 3; a++)
+            c->place[0][n][a] = b->rest.centre[a] + (double)(&f->clamp[c->held[n].particle].x)[a];
+    for (int end = 0; end < 2; end++) {
+        double (*at)[3] = c->place[1 + end] + first;
+        TOBI_TRY(tobi_body_ask_motion(b, s->sim->time + s->sim->way + (end ? s->dt : 0), count,
+                                      (const double (*)[3])(c->place[0] + first), at, err));
+        for (int64_t n = 0; n < count; n++) vec3_sub(at[n], at[n], b->lower);
+    }
+    return TOBI_OK;
+}
+
+/* Where the body has the particle, now or at the end of the step. */
+static double find_place(const holding *v, int64_t n, int end, int a)
+{
+    if (v->at->deforms) return v->c->place[1 + end][n][a];
+    const tobi_float4 *rest = &mpm_fields_of(&v->s->particles)->clamp[v->c->held[n].particle];
+    const double arm[3] = {rest->x, rest->y, rest->z};
+    return v->at->centre[end][a] + vec3_dot(v->at->matrix[end][a], arm);
 }
 
 /* What it is to do, eq. (5). */
@@ -160,13 +240,12 @@ static void look(const holding *v, int64_t n)
     const int64_t i = v->c->held[n].particle;
     const mpm_fields *f = mpm_fields_of(&s->particles);
     const tobi_double3 x = s->particles.position[i];
-    const double at[3] = {x.x, x.y, x.z}, rest[3] = {f->clamp[i].x, f->clamp[i].y, f->clamp[i].z};
+    const double at[3] = {x.x, x.y, x.z};
     mpm_held *h = &v->c->held[n];
     h->mass = f->strain[i].c[2].w;
     vec3_sub(h->arm, at, v->at->centre[0]);
     for (int a = 0; a < 3; a++) {
-        const double now = v->at->centre[0][a] + vec3_dot(v->at->matrix[0][a], rest),
-                     next = v->at->centre[1][a] + vec3_dot(v->at->matrix[1][a], rest);
+        const double now = find_place(v, n, 0, a), next = find_place(v, n, 1, a);
         h->aim[a] = a < s->box.dimension ? (next - now + v->share*(now - at[a]))/s->dt : 0;
     }
 }
@@ -306,6 +385,7 @@ tobi_status mpm_clamp_hold(mpm_clamp *c, tobi_system *s, const mpm_grid *g, cons
                                .share = SHARE*shorter*shorter };
         if (count == 0) continue;
         TOBI_TRY(find_poses(s, b, &at, err));
+        if (b->deforms) TOBI_TRY(ask_places(c, s, k, err));
         tobi_loop(tobi_team(&s->sim->exec, count, 1024), count, 0, look_at_all, &view);
         if (at.moves) {
             solve_body(c, k, s->sim, s->dt);

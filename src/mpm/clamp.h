@@ -1,4 +1,4 @@
-/* Particles of solids that a rigid body holds: docs/theory/contact.md, "Clamps", decision 83. */
+/* Particles of solids that bodies hold: docs/theory/contact.md, "Clamps", decisions 83 and 97. */
 #pragma once
 #include "core/system.h"
 #include "mpm/feel.h"
@@ -16,6 +16,7 @@ typedef struct mpm_clamp {
     mpm_held *held;                    /* by body, then in the order of the particles              */
     uint32_t *node;                    /* [held][MPM_FELT]                                         */
     float *weight;                     /* the same                                                 */
+    double (*place[3])[3];             /* [held] m, of bodies that deform: at rest, now, after the step */
     int64_t count, room;
     int64_t *first;                    /* [bodies + 1] where those of a body begin                 */
     int bodies;
@@ -24,8 +25,8 @@ typedef struct mpm_clamp {
     double work;                       /* J, of the bodies on the solids in the last step          */
 } mpm_clamp;
 
-/* The field `clamp` of particles: x, y, z in the axes of the body that holds it, about its centre of mass, m;
-   w: 0 = none does, else 1 + its number, negative where it lies inside. */
+/* The field `clamp` of particles: x, y, z in the axes of the body that holds it, about its centre of mass, of
+   one that deforms at rest, m; w: 0 = none does, else 1 + its number, negative where it lies inside. */
 
 /* The body whose clamp holds particle i, -1: none. */
 int mpm_clamp_body(const tobi_system *s, int64_t i);
@@ -33,6 +34,8 @@ int mpm_clamp_body(const tobi_system *s, int64_t i);
 int mpm_clamp_hides(const tobi_system *s, int64_t i);
 /* For a new particle, whose body stands where it starts: whether it is held, and where. */
 void mpm_clamp_place(const tobi_system *s, int64_t i);
+/* m, of a held particle at the start from where its body has it. */
+tobi_status mpm_clamp_find_stray(const tobi_system *s, int64_t i, double *stray, tobi_error *err);
 /* In every step, before contact: impulses to nodes and bodies. fresh: 1 if particles were sorted. */
 tobi_status mpm_clamp_hold(mpm_clamp *c, tobi_system *s, const mpm_grid *g, const mpm_view *v, int fresh,
                            tobi_error *err);

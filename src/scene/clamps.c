@@ -8,7 +8,7 @@
 static const char *find_reason(const tobi_scene_body *b)
 {
     if (b->def.blade) return "is a blade, which cuts solids";
-    if (b->motion && !b->def.motion_rigid) return "changes its shape";
+    if (b->motion && !b->def.motion_rigid && b->def.dynamics != TOBI_PRESCRIBED) return "swims";
     if (b->def.absent_from > 0) return "is absent for a time";
     return NULL;
 }
@@ -33,7 +33,7 @@ static void check_name(const tobi_scene *scene, const char *name, tobi_source *s
         if (!b->def.name || strcmp(b->def.name, name) != 0) continue;
         const char *reason = find_reason(b);
         if (reason)
-            tobi_source_mistake(source, key, "\"%s\" %s; a rigid body holds a solid", name, reason);
+            tobi_source_mistake(source, key, "\"%s\" %s; such a body holds no solid", name, reason);
         return;
     }
     suggest_body(scene, name, source, key);

@@ -11,7 +11,7 @@
 static const char *find_reason(const tobi_body *b)
 {
     if (b->blade) return "is a blade, which cuts solids";
-    if (b->swimmer || b->deforms) return "changes its shape";
+    if (b->swimmer) return "swims";
     if (b->absent[0] > 0) return "is absent for a time";
     return NULL;
 }
@@ -29,8 +29,8 @@ static tobi_status find_clamp(const tobi_world *w, tobi_solid *solid, const char
         return tobi_fail(err, TOBI_INVALID, "solid '%s' is clamped to '%s' twice", solid->name, name);
     const char *reason = find_reason(&w->sim.bodies[body]);
     if (reason)
-        return tobi_fail(err, TOBI_UNSUPPORTED, "solid '%s' is clamped to '%s', which %s; a rigid body holds "
-                         "a solid", solid->name, name, reason);
+        return tobi_fail(err, TOBI_UNSUPPORTED, "solid '%s' is clamped to '%s', which %s; such a body holds "
+                         "no solid", solid->name, name, reason);
     solid->clamp[solid->clamp_count++] = body;
     return TOBI_OK;
 }
@@ -68,13 +68,34 @@ tobi_status tobi_world_find_clamps(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Of a spacing: farther from where the motion has it at the start no particle is. */
+static const double STRAY = 0.01;
+
+static tobi_status check_stray(const tobi_world *w, const tobi_solid *d, int64_t i, tobi_error *err)
+{
+    const tobi_system *s = tobi_world_solids(w);
+    const tobi_double3 x = s->particles.position[i];
+    double stray;
+    TOBI_TRY(mpm_clamp_find_stray(s, i, &stray, err));
+    if (stray <= STRAY*s->smoothing.spacing) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "solid '%s': the motion of body '%s' takes no place to (%g, %g, %g) "
+                     "m, where a particle that it holds starts", d->name,
+                     w->sim.bodies[mpm_clamp_body(s, i)].name, x.x + s->box.lower[0], x.y + s->box.lower[1],
+                     x.z + s->box.lower[2]);
+}
+
 /* Refuses a body, number n of those that the solid names, that holds none of its particles. */
 static tobi_status check_clamp(const tobi_world *w, int solid, int n, tobi_error *err)
 {
     const tobi_system *s = tobi_world_solids(w);
     const tobi_solid *d = &s->solids[solid];
-    for (int64_t i = 0; i < s->particles.count; i++)
-        if (s->particles.fluid[i] == solid && mpm_clamp_body(s, i) == d->clamp[n]) return TOBI_OK;
+    int64_t held = 0;
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        if (s->particles.fluid[i] != solid || mpm_clamp_body(s, i) != d->clamp[n]) continue;
+        TOBI_TRY(at_name(d, solid, n, check_stray(w, d, i, err), err));
+        held++;
+    }
+    if (held > 0) return TOBI_OK;
     const tobi_status status =
         tobi_fail(err, TOBI_INVALID, "solid '%s' is clamped to '%s', but none of its particles starts in "
                   "that body or nearer than a spacing, %.3g m, to it%s", d->name,

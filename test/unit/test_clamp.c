@@ -226,17 +226,6 @@ static void the_same_bits(void **state)
     }
 }
 
-static tobi_status bend(void *user, double t, int64_t n, const double (*rest)[3], double (*out)[3],
-                        tobi_error *err)
-{
-    (void)user, (void)err;
-    for (int64_t i = 0; i < n; i++) {
-        memcpy(out[i], rest[i], sizeof out[i]);
-        out[i][0] += t*rest[i][1]*rest[i][1];
-    }
-    return TOBI_OK;
-}
-
 static void refuse(setup s, tobi_status status, const char *words)
 {
     tobi_world *world = solid_world(&s.solid);
@@ -256,10 +245,11 @@ static void what_is_refused(void **state)
     refuse(s, TOBI_INVALID, "can not be held");
     s = make_setup();
     s.body.absent_from = 1;
-    refuse(s, TOBI_UNSUPPORTED, "is absent for a time; a rigid body holds a solid");
+    refuse(s, TOBI_UNSUPPORTED, "is absent for a time; such a body holds no solid");
     s = make_setup();
-    s.body.motion = bend;
-    refuse(s, TOBI_UNSUPPORTED, "changes its shape");
+    s.body.motion = turn;
+    s.body.dynamics = TOBI_FREE;
+    refuse(s, TOBI_UNSUPPORTED, "swims; such a body holds no solid");
     s = make_setup();
     s.solid.fill.box_min[2] = 0.02;
     s.solid.fill.box_max[2] = 0.1;

@@ -33,11 +33,11 @@ static const char text[] =
 
 static const char *const expected[] = {
     ":7:44: solids[0].clamped_to: \"plat\" is no body of the scene; did you mean \"plate\"?",
-    ":9:34: solids[1].clamped_to: \"gate\" is absent for a time; a rigid body holds a solid",
-    ":11:34: solids[2].clamped_to: \"knife\" is a blade, which cuts solids; a rigid body holds a solid",
+    ":9:34: solids[1].clamped_to: \"gate\" is absent for a time; such a body holds no solid",
+    ":11:34: solids[2].clamped_to: \"knife\" is a blade, which cuts solids; such a body holds no solid",
     "solids[3].clamped_to: is nothing that this model knows",
     ":15:44: solids[4].clamped_to[1]: \"gates\" is no body of the scene; did you mean \"gate\"?",
-    ":15:53: solids[4].clamped_to[2]: \"gate\" is absent for a time; a rigid body holds a solid",
+    ":15:53: solids[4].clamped_to[2]: \"gate\" is absent for a time; such a body holds no solid",
     ":15:61: solids[4].clamped_to[3]: \"plate\" is named twice",
     ":17:34: solids[5].clamped_to: is empty, must be a name or a list of names",
     ":19:34: solids[6].clamped_to: is a number, must be a name or a list of names",
