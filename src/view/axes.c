@@ -55,22 +55,41 @@ static bool has_room(labels *l, float x, float y, float wide, float unit)
     return true;
 }
 
+static void write_tick(double v, double step, char text[32])
+{
+    snprintf(text, 32, "%.4g", fabs(v) < 1e-9*step ? 0 : v);
+}
+
+float view_axis_room(const canvas *c, const tobi_picture *f, int axis)
+{
+    const float unit = 0.8f*view_letter_unit(c);
+    const double low = f->box_min[axis], high = f->box_max[axis], step = view_tick_step(high - low);
+    float widest = 0;
+    char text[32];
+    for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
+        write_tick(v, step, text);
+        widest = fmaxf(widest, view_text_width(text, unit));
+    }
+    return widest + 8*unit;
+}
+
 static void draw_ticks(canvas *c, const tobi_picture *f, const edge *e, float way[2], labels *l)
 {
     const int k = e->axis;
     const float unit = 0.8f*view_letter_unit(c);
     const double low = f->box_min[k], high = f->box_max[k], step = view_tick_step(high - low);
     const vec ink = { 0.02f, 0.03f, 0.05f };
-    char text[64];
+    char text[32];
     for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
         double at[3] = { e->from[0], e->from[1], e->from[2] };
         at[k] = v;
         const spot s = project(&c->camera, view_point(&c->camera, at));
         const float to[2] = { s.x + 4*unit*way[0], s.y + 4*unit*way[1] };
         view_draw_stroke(c, (float[2]){ s.x, s.y }, to, 1.2f, ink);
-        snprintf(text, sizeof text, "%.4g", fabs(v) < 1e-9*step ? 0 : v);
+        write_tick(v, step, text);
         const float wide = view_text_width(text, unit);
-        const float x = to[0] + (way[0] < -0.5f ? -wide - 2*unit : way[0] > 0.5f ? 2*unit : -0.5f*wide);
+        const float beside = way[0] < -0.5f ? -wide - 2*unit : way[0] > 0.5f ? 2*unit : -0.5f*wide;
+        const float x = clampf(to[0] + beside, 2, (float)c->width - wide);
         const float y = to[1] + (way[1] > 0.5f ? 9*unit : 3*unit);
         if (has_room(l, x, y, wide, unit)) view_draw_text(c, x, y, unit, text, ink);
     }

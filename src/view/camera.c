@@ -124,6 +124,11 @@ static void aim_front(canvas *v, const tobi_picture *f)
     c->focal = (float)fmin(across/wide, down/high);
     c->center_x = (float)(v->width*0.5*(1 - bar));
     c->center_y = (float)(v->height*0.5*(1 + top));
+    const double left = f->axes ? view_axis_room(v, f, 1) : 0, right = v->width*(0.96 - bar);
+    if (c->center_x - 0.5*wide*c->focal < left) {      /* moved aside, and smaller if that is not enough */
+        c->focal = (float)fmin(c->focal, (right - left)/wide);
+        c->center_x = (float)(left + 0.5*wide*c->focal);
+    }
     for (int k = 0; k < 2; k++) c->eye[k] = 0.5*(f->box_min[k] + f->box_max[k]);
     c->eye[2] = 0;
     c->near = -INFINITY;

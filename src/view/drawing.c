@@ -252,12 +252,13 @@ static void take_bodies(tobi_drawing *d)
     d->picture.mesh_count = count;
 }
 
-/* Half the speed of a fall through the domain: the same colours in every picture of a run. */
+/* Half the speed of a fall through the domain, or what comes in faster: the same colours in every picture of
+   a run. 0, without gravity: those of each picture. */
 static double color_speed(const tobi_looks *s)
 {
     double work = 0;
     for (int a = 0; a < s->dimension; a++) work += fabs(s->gravity[a])*(s->box_max[a] - s->box_min[a]);
-    return 0.5*sqrt(2*work);
+    return work > 0 ? fmax(0.5*sqrt(2*work), s->speed) : 0;
 }
 
 /* Range and label of the colours of a field, or of the speed. */
@@ -338,6 +339,14 @@ static void set_view(tobi_drawing *d)
     set_range(d);
 }
 
+/* Four digits after the point, or three that count. */
+static void write_time(double t, char *text, size_t room)
+{
+    const int lead = t > 0 ? (int)floor(log10(t)) : 0;
+    if (lead < -6) snprintf(text, room, "t = %.3g s", t);
+    else snprintf(text, room, "t = %.*f s", lead < -2 ? 2 - lead : 4, t);
+}
+
 static void set_picture(tobi_drawing *d)
 {
     const tobi_looks *s = d->looks;
@@ -359,7 +368,7 @@ static void set_picture(tobi_drawing *d)
     if (solids || liquids) p->group = d->group;
     p->value_max = d->has_palette ? d->colors - 1 : color_speed(s);
     if (d->has_palette) p->palette = (const float (*)[3])d->palette, p->palette_count = d->colors;
-    snprintf(d->title, sizeof d->title, "t = %.4f s", d->moment->time);
+    write_time(d->moment->time, d->title, sizeof d->title);
     p->title = d->title;
     if (d->skin) {
         p->skins = d->skins, p->skin_count = s->material_count;

@@ -195,7 +195,7 @@ double tobi_world_start_head(const tobi_world *w, const tobi_system *s)
 }
 
 /* Of a region: its velocity, its spin at the farthest corner, and, once it is filled, its flow. */
-double tobi_world_start_speed(const tobi_world *w, const tobi_system *s)
+static double find_start_speed(const tobi_world *w, const tobi_system *s, bool scripts)
 {
     double fastest = 0;
     for (int k = 0; k < w->region_count; k++) {
@@ -204,9 +204,22 @@ double tobi_world_start_speed(const tobi_world *w, const tobi_system *s)
                           0.5*(r->upper[2] - r->lower[2])};
         double reach = r->radius > 0 ? r->radius : length(half);
         if (&w->system[r->system] != s) continue;
-        fastest = fmax(fastest, length(r->velocity) + length(r->spin)*reach + r->flow_speed);
+        fastest = fmax(fastest, length(r->velocity) + length(r->spin)*reach + (scripts ? r->flow_speed : 0));
     }
     return s == &w->system[0] ? fmax(fastest, tobi_openings_peak(&w->sim)) : fastest;
+}
+
+double tobi_world_start_speed(const tobi_world *w, const tobi_system *s)
+{
+    return find_start_speed(w, s, true);
+}
+
+double tobi_world_given_speed(const tobi_world *w)
+{
+    double fastest = 0;
+    for (int k = 0; k < w->system_count; k++)
+        fastest = fmax(fastest, find_start_speed(w, &w->system[k], false));
+    return fastest;
 }
 
 /* Room for the particles of a system, and the particles. */

@@ -1,5 +1,6 @@
 /* From a moment to a picture: what is hidden, colours of kinds and pieces, which of them a field colours,
    bodies by name, paths. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -86,6 +87,57 @@ static void solids_beside_liquids_have_colors(void **state)
         tobi_drawing_free(d);
     }
     looks = before;
+}
+
+/* Times of any length can be told apart; colours of speed reach what is poured in. */
+static void small_times_and_great_speeds(void **state)
+{
+    (void)state;
+    static const struct { double t; const char *title; } times[] = {
+        { 0, "t = 0.0000 s" }, { 12.5, "t = 12.5000 s" }, { 0.035, "t = 0.0350 s" },
+        { 0.0021, "t = 0.00210 s" }, { 1e-5, "t = 0.0000100 s" }, { 2.5e-8, "t = 2.5e-08 s" }
+    };
+    const tobi_view_def view = plain_view();
+    const tobi_looks before = looks;
+    const double time = moment.time;
+    for (size_t k = 0; k < sizeof times/sizeof *times; k++) {
+        tobi_drawing *d;
+        moment.time = times[k].t;
+        d = make(&view);
+        assert_string_equal(tobi_drawing_picture(d)->title, times[k].title);
+        tobi_drawing_free(d);
+    }
+    moment.time = time;
+    looks.material_count = 1;
+    looks.dimension = 2;
+    for (int fast = 0; fast < 2; fast++) {
+        looks.gravity[1] = -9.81;
+        looks.speed = fast ? 30 : 1;
+        tobi_drawing *d = make(&view);
+        assert_float_equal(tobi_drawing_picture(d)->value_max, fast ? 30 : 0.5*sqrt(2*9.81), 1e-6);
+        tobi_drawing_free(d);
+    }
+    looks = before;
+}
+
+/* Long numbers at the upright axis of a flat scene find room in the picture. */
+static void numbers_at_axes_are_whole(void **state)
+{
+    (void)state;
+    enum { W = 320, H = 180 };
+    static uint8_t rgb[2][H][W][3];
+    tobi_error err = { 0 };
+    tobi_picture p = tobi_default_picture();
+    int ink = 0;
+    p.dimension = 2, p.width = W, p.height = H;
+    p.box_max[0] = 6e-4, p.box_max[1] = 3e-4;
+    for (p.axes = 0; p.axes < 2; p.axes++)
+        if (tobi_picture_draw(&p, &rgb[p.axes][0][0][0], &err)) fail_msg("%s", err.text);
+    for (int y = 0; y < H; y++) {
+        assert_memory_equal(rgb[0][y][0], rgb[1][y][0], 3);
+        for (int x = 0; x < W/4; x++) ink += rgb[1][y][x][1] + 30 < rgb[0][y][x][1];
+    }
+    assert_true(ink > 100);
 }
 
 enum { SIDE = 64, WIDE = 20, DEEP = 3, BLOCK = WIDE*WIDE*DEEP };
@@ -245,7 +297,8 @@ static void wrong_calls_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(materials_have_looks),
+        cmocka_unit_test(materials_have_looks), cmocka_unit_test(small_times_and_great_speeds),
+        cmocka_unit_test(numbers_at_axes_are_whole),
         cmocka_unit_test(solids_beside_liquids_have_colors), cmocka_unit_test(bodies_are_found_by_name),
         cmocka_unit_test(fields_of_one_kind), cmocka_unit_test(isolines_of_one_kind),
         cmocka_unit_test(tracks_are_read), cmocka_unit_test(wrong_calls_are_refused)
