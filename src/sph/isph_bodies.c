@@ -101,6 +101,37 @@ static void add_shares(const void *view, int64_t begin, int64_t end)
     }
 }
 
+static tobi_status reserve_mirrors(isph_solver *m, int64_t need, tobi_error *err)
+{
+    const int64_t room = need + need/2 + 64;
+    if (need <= m->mirrors) return TOBI_OK;
+    isph_mirror *more = tobi_array_grow(m->mirror, 0, room, sizeof *more);
+    if (more) m->mirror = more;
+    int64_t *first = more ? tobi_array_grow(m->view.first_group, 0, room, sizeof *first) : NULL;
+    if (!first) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld mirrors", (long long)room);
+    m->view.first_group = first;
+    m->mirrors = room;
+    return TOBI_OK;
+}
+
+/* Images of pairs; how many there are is known when all are made. */
+static tobi_status list_images(isph_solver *m, tobi_error *err)
+{
+    isph_view *v = &m->view;
+    v->group_count = &m->groups;
+    for (;;) {
+        m->groups = 0;
+        tobi_launch(m->exec, m->kernel->isph_list_images, v, 0, v->count, NULL);
+        if (m->groups <= v->group_room) return TOBI_OK;
+        const int64_t room = m->groups + m->groups/8 + 64;
+        isph_group_place *more = tobi_array_grow(v->group, 0, room, sizeof *more);
+        if (!more)
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld groups of images", (long long)room);
+        v->group = more;
+        v->group_room = room;
+    }
+}
+
 tobi_status isph_bodies_find_mirrors(isph_solver *m, tobi_system *s, tobi_error *err)
 {
     const tobi_boundary_links *n = &sph_of(s)->links;
@@ -110,19 +141,12 @@ tobi_status isph_bodies_find_mirrors(isph_solver *m, tobi_system *s, tobi_error 
     if (!v->last_link) return TOBI_OK;
     m->corners = 0;
     for (int b = 0; b < s->sim->body_count; b++) m->corners |= !s->sim->bodies[b].convex;
-    const int64_t need = n->count*(m->corners ? s->box.dimension : 1);
-    if (need > m->mirrors) {
-        const int64_t room = need + need/2 + 64;
-        isph_mirror *more = tobi_array_grow(m->mirror, 0, room, sizeof *more);
-        if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld mirrors", (long long)room);
-        m->mirror = more;
-        m->mirrors = room;
-    }
+    TOBI_TRY(reserve_mirrors(m, n->count*(m->corners ? s->box.dimension : 1), err));
     v->mirror = m->mirror;
     const mirrors all = { m, s, 0 };
     tobi_loop(s->sim->exec.threads, n->count, 0, make_mirrors, &all);
     tobi_loop(s->sim->exec.threads, n->count, 0, add_shares, &all);
-    return TOBI_OK;
+    return list_images(m, err);
 }
 
 static void remove_hydrostatic(const void *view, int64_t begin, int64_t end)
@@ -171,4 +195,6 @@ void isph_bodies_accelerate(isph_solver *m, tobi_system *s, double dt)
 {
     const mirrors all = { m, s, dt };
     tobi_loop(s->sim->exec.threads, sph_of(s)->links.count, 0, accelerate, &all);
+    if (m->view.last_link)
+        tobi_launch(m->exec, m->kernel->isph_refresh_images, &m->view, 0, m->view.count, NULL);
 }

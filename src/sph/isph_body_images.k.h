@@ -1,9 +1,13 @@
 /* Images of pairs at bodies, in the mean of the planes at the points of the surface that are closest to
    either particle: exact at flat faces, rounded at edges. In a concave corner of one body also images in two
-   or three of its faces at once. Images at two bodies at once are left out.
-   Drawback: pairs are made one at a time; they are handed on in groups. */
+   or three of its faces at once. Images at two bodies at once are left out. They are made once for all loops
+   of a step, and again where bodies change their velocity within it.
+   Drawback: pairs are made one at a time; what is made takes some 50 bytes an image. */
 #pragma once
 #include "sph/isph_images.k.h"
+
+/* Of the square of the support: what is farther is out of reach whatever the rounding. */
+#define ISPH_REACH 1.0001
 
 enum {
     ISPH_PLANES = 6,                 /* that a pair sees at once                                    */
@@ -13,7 +17,9 @@ enum {
 
 /* The mirror of a pair at one body. */
 typedef struct isph_plane {
+    int32_t mirror[2];               /* of i and of j                                               */
     double normal[3], velocity[3], velocity_change[3];
+    double size;                     /* 1: square of the normal before it is closed                 */
     double sum[3];                   /* m, of the offsets of both particles                         */
     double weight;
 } isph_plane;
@@ -21,45 +27,68 @@ typedef struct isph_plane {
 /* One particle's images at bodies: where the walk is, and the group at hand. */
 typedef struct isph_walk {
     const isph_view *v;
-    const isph_reflections *reflections;
-    int64_t i, j, first;
+    isph_reflections reflections;
+    int64_t i, first;
     int k, groups;                   /* the next of the list; before all others i itself            */
     double offset[3];                /* m, x_i - x_j                                                */
     isph_plane plane[ISPH_PLANES];
     int planes;                      /* of the pair                                                 */
-    int face[ISPH_IMAGES][ISPH_FACES], images, at;   /* the planes of each, -1: none; those done     */
+    int face[ISPH_IMAGES][ISPH_FACES], images;       /* the planes of each, -1: none                */
+    int at, reflection;              /* the image that comes next                                   */
     double whole[ISPH_IMAGES];       /* 1: how much there is of one in several planes               */
     int used;                        /* images in the group                                         */
-    int32_t index[8];
-    int64_t entry[8];
-    float x[3][8], displacement[3][8], sign[3][8], normal[3][8];
-    float normal_velocity[8], velocity_change[8], weight[8];
-    int corners;                     /* of the group: images in several planes                      */
-    float corner_velocity[3][8], corner_change[3][8];
+    isph_image_group group;          /* at hand                                                     */
+    isph_image_rest rest;            /* of it                                                       */
 } isph_walk;
 
-/* Where both share of the body is below a half there is next to none between a particle and the image. */
-TOBI_FN void isph_add_plane(isph_walk *w, const isph_mirror *a, const isph_mirror *b)
+/* Two faces of a corner that is concave; offset: of the pair. */
+TOBI_FN int isph_faces_apart(const isph_mirror *a, const isph_mirror *b, const double offset[3])
 {
-    isph_plane *p = &w->plane[w->planes];
-    const double both = a->share + b->share - 0.5;
-    double size = 0, turn = 0, hollow = 0;
-    for (int c = 0; c < 3; c++) {                    /* two faces of a corner that is concave */
+    double turn = 0, hollow = 0;
+    for (int c = 0; c < 3; c++) {
         turn += a->normal[c]*b->normal[c];
-        hollow += (a->offset[c] - b->offset[c] - w->offset[c])*(a->normal[c] - b->normal[c]);
+        hollow += (a->offset[c] - b->offset[c] - offset[c])*(a->normal[c] - b->normal[c]);
     }
-    if (turn < ISPH_TWO_FACES && hollow > 0) return;
+    return turn < ISPH_TWO_FACES && hollow > 0;
+}
+
+/* Where both share of the body is below a half there is next to none between a particle and the image. 0: the
+   surface turns by 120 degrees or more, or there is no body. */
+TOBI_FN int isph_find_plane(const isph_view *v, int32_t own, int32_t other, isph_plane *p)
+{
+    const isph_mirror *a = &v->mirror[own], *b = &v->mirror[other];
+    const double both = a->share + b->share - 0.5;
+    p->size = 0;
+    p->mirror[0] = own;
+    p->mirror[1] = other;
     p->weight = both < 0 ? 0 : both < 1 ? both : 1;
     for (int c = 0; c < 3; c++) {
         p->normal[c] = a->normal[c] + b->normal[c];
         p->velocity[c] = 0.5*(a->velocity[c] + b->velocity[c]);
         p->velocity_change[c] = 0.5*(a->velocity_change[c] + b->velocity_change[c]);
         p->sum[c] = a->offset[c] + b->offset[c];
-        size += p->normal[c]*p->normal[c];
+        p->size += p->normal[c]*p->normal[c];
     }
-    if (!(size > 1) || !(p->weight > 0)) return;     /* the surface turns by less than 120 degrees */
-    for (int c = 0; c < 3; c++) p->normal[c] /= sqrt(size);
-    w->planes++;
+    return p->size > 1 && p->weight > 0;
+}
+
+TOBI_FN void isph_plane_close(isph_plane *p)
+{
+    for (int c = 0; c < 3; c++) p->normal[c] /= sqrt(p->size);
+}
+
+/* Most images are out of reach: of the only plane r^2 = o^2 + 4 s_i s_j tells it before roots are drawn. */
+TOBI_FN int isph_walk_misses(const isph_walk *w)
+{
+    const isph_plane *p = &w->plane[0];
+    double own = 0, other = 0, square = 0;
+    if (w->planes != 1 || w->reflections.total != 1) return 0;
+    for (int a = 0; a < 3; a++) {
+        own += (p->sum[a] + w->offset[a])*p->normal[a];
+        other += (p->sum[a] - w->offset[a])*p->normal[a];
+        square += w->offset[a]*w->offset[a];
+    }
+    return (square - ISPH_REACH*w->v->h*w->v->h)*p->size + own*other > 0;
 }
 
 /* How much of the image in both of two faces there is: all of it in a corner of at most 90 degrees; images in
@@ -83,8 +112,10 @@ TOBI_FN double isph_planes_meet(const isph_walk *w, int p, int q)
 TOBI_FN void isph_walk_list_images(isph_walk *w)
 {
     int (*f)[ISPH_FACES] = w->face;
-    w->images = w->at = 0;
+    w->images = w->at = w->reflection = 0;
+    if (isph_walk_misses(w)) return;
     for (int p = 0; p < w->planes; p++) {
+        isph_plane_close(&w->plane[p]);
         f[w->images][0] = p;
         f[w->images][1] = f[w->images][2] = -1;
         w->images++;
@@ -109,7 +140,6 @@ TOBI_FN void isph_walk_list_images(isph_walk *w)
 TOBI_FN void isph_walk_load_pair(isph_walk *w, int64_t j)
 {
     const isph_view *v = w->v;
-    w->j = j;
     w->planes = 0;
     for (int a = 0; a < 3; a++) {
         double x = (&v->position[w->i].x)[a] - (&v->position[j].x)[a];
@@ -118,19 +148,39 @@ TOBI_FN void isph_walk_load_pair(isph_walk *w, int64_t j)
     }
     for (int32_t a = v->last_link[w->i]; a >= 0; a = v->mirror[a].previous)
         for (int32_t b = v->last_link[j]; b >= 0; b = v->mirror[b].previous)
-            if (v->mirror[a].body == v->mirror[b].body && w->planes < ISPH_PLANES)
-                isph_add_plane(w, &v->mirror[a], &v->mirror[b]);
+            if (v->mirror[a].body == v->mirror[b].body && w->planes < ISPH_PLANES &&
+                !isph_faces_apart(&v->mirror[a], &v->mirror[b], w->offset))
+                w->planes += isph_find_plane(v, a, b, &w->plane[w->planes]);
     isph_walk_list_images(w);
 }
 
-TOBI_FN isph_walk isph_walk_begin(const isph_view *v, int64_t i, const isph_reflections *reflections,
-                                  int64_t first, int groups)
+TOBI_FN void isph_walk_begin(isph_walk *w, const isph_view *v, int64_t i)
 {
-    isph_walk w;
-    w.v = v; w.reflections = reflections; w.i = i; w.first = first; w.groups = groups;
-    w.k = 0;
-    isph_walk_load_pair(&w, i);
-    return w;
+    w->v = v;
+    w->i = i;
+    w->reflections = isph_find_reflections(v, i);
+    w->first = 8*(int64_t)v->list_start[i];
+    w->groups = 8*v->list_groups[i];
+    w->k = 0;
+    isph_walk_load_pair(w, i);
+}
+
+/* What sides leave of the normal; speed: of the plane along it, and its change. 0: next to nothing. */
+TOBI_FN int isph_plane_along(const isph_plane *p, const int sided[3], double normal[3], double speed[2])
+{
+    double size = 0;
+    speed[0] = speed[1] = 0;
+    for (int a = 0; a < 3; a++) {
+        normal[a] = sided[a] ? 0 : p->normal[a];
+        size += normal[a]*normal[a];
+    }
+    if (size < 0.9) return 0;
+    for (int a = 0; a < 3; a++) {
+        normal[a] /= sqrt(size);
+        speed[0] += p->velocity[a]*normal[a];
+        speed[1] += p->velocity_change[a]*normal[a];
+    }
+    return 1;
 }
 
 /* The image at sides, once more mirrored at a body: only where the two stand across one another. Symmetric:
@@ -138,21 +188,15 @@ TOBI_FN isph_walk isph_walk_begin(const isph_view *v, int64_t i, const isph_refl
 TOBI_FN void isph_walk_add_image(isph_walk *w, const isph_plane *b, const int side[3])
 {
     const isph_view *v = w->v;
-    const int k = w->used;
-    double x[3], normal[3], size = 0, own = 0, other = 0, normal_velocity = 0, change = 0, r2 = 0;
+    isph_image_group *g = &w->group;
+    const int k = w->used, sided[3] = { side[0] >= 0, side[1] >= 0, side[2] >= 0 };
+    double x[3], normal[3], speed[2], own = 0, other = 0, r2 = 0;
+    if (!isph_plane_along(b, sided, normal, speed)) return;
     for (int a = 0; a < 3; a++) {
         const double wall = side[a] == 1 ? v->size[a] : 0;
         x[a] = side[a] < 0 ? w->offset[a] : 2*((&v->position[w->i].x)[a] - wall) - w->offset[a];
-        normal[a] = side[a] < 0 ? b->normal[a] : 0;
-        size += normal[a]*normal[a];
-    }
-    if (size < 0.9) return;
-    for (int a = 0; a < 3; a++) {
-        normal[a] /= sqrt(size);
         own += 0.5*(b->sum[a] + w->offset[a])*normal[a];
         other += 0.5*(b->sum[a] - w->offset[a])*normal[a];
-        normal_velocity += b->velocity[a]*normal[a];
-        change += b->velocity_change[a]*normal[a];
     }
     if (!(own > 0) || !(other > 0)) return;
     for (int a = 0; a < 3; a++) {
@@ -161,17 +205,18 @@ TOBI_FN void isph_walk_add_image(isph_walk *w, const isph_plane *b, const int si
     }
     if (r2 >= v->h*v->h) return;
     for (int a = 0; a < 3; a++) {
-        w->x[a][k] = (float)x[a];
-        w->displacement[a][k] = (float)(w->offset[a] - x[a]);
-        w->sign[a][k] = side[a] < 0 ? 1 : -1;
-        w->normal[a][k] = (float)normal[a];
+        g->x[a][k] = (float)x[a];
+        g->displacement[a][k] = (float)(w->offset[a] - x[a]);
+        w->rest.sign[a][k] = side[a] < 0 ? 1 : -1;
+        g->normal[a][k] = (float)normal[a];
+        w->rest.velocity[a][k] = w->rest.change[a][k] = 0;
     }
-    w->normal_velocity[k] = (float)normal_velocity;
-    w->velocity_change[k] = (float)change;
-    w->weight[k] = (float)b->weight;
-    w->index[k] = (int32_t)w->j;
-    w->entry[k] = w->k > 0 ? w->first + w->k - 1 : -1;
-    for (int a = 0; a < 3; a++) w->corner_velocity[a][k] = w->corner_change[a][k] = 0;
+    g->normal_velocity[k] = (float)speed[0];
+    g->velocity_change[k] = (float)speed[1];
+    g->weight[k] = (float)b->weight;
+    for (int e = 0; e < 2; e++) g->mirror[e][k] = b->mirror[e];
+    g->neighbor[k] = w->k - 1;
+    g->sided |= sided[0] | sided[1] | sided[2];
     w->used++;
 }
 
@@ -253,6 +298,7 @@ TOBI_FN int isph_corner_close(isph_corner *c, const isph_walk *w, const int side
 TOBI_FN void isph_walk_add_corner(isph_walk *w, const int face[ISPH_FACES], double whole, const int side[3])
 {
     const int k = w->used, faces = face[2] < 0 ? 2 : 3;
+    isph_image_group *g = &w->group;
     isph_corner c;
     double x[3], speed[3], change[3], r2 = 0;
     c.faces = 0;
@@ -267,32 +313,33 @@ TOBI_FN void isph_walk_add_corner(isph_walk *w, const int face[ISPH_FACES], doub
     isph_compose(c.normal, c.moved, speed);
     isph_compose(c.normal, c.change, change);
     for (int a = 0; a < 3; a++) {
-        w->x[a][k] = (float)x[a];
-        w->displacement[a][k] = (float)(w->offset[a] - x[a]);
-        w->sign[a][k] = -1;
-        w->normal[a][k] = faces == 2 && side[a] < 0 ? (float)c.normal[2][a] : 0;
-        w->corner_velocity[a][k] = (float)(2*speed[a]);
-        w->corner_change[a][k] = (float)change[a];
+        g->x[a][k] = (float)x[a];
+        g->displacement[a][k] = (float)(w->offset[a] - x[a]);
+        w->rest.sign[a][k] = -1;
+        g->normal[a][k] = faces == 2 && side[a] < 0 ? (float)c.normal[2][a] : 0;
+        w->rest.velocity[a][k] = (float)(2*speed[a]);
+        w->rest.change[a][k] = (float)change[a];
     }
-    w->normal_velocity[k] = w->velocity_change[k] = 0;
-    w->weight[k] = (float)c.weight;
-    w->index[k] = (int32_t)w->j;
-    w->entry[k] = w->k > 0 ? w->first + w->k - 1 : -1;
-    w->corners = 1;
+    g->normal_velocity[k] = g->velocity_change[k] = 0;
+    g->weight[k] = (float)c.weight;
+    g->neighbor[k] = w->k - 1;
+    g->corners = 1;
     w->used++;
 }
 
 /* The next group; 0: there is none. */
 TOBI_FN int isph_walk_fill(isph_walk *w)
 {
-    w->used = w->corners = 0;
+    w->used = w->group.corners = w->group.sided = 0;
     for (;;) {
-        for (; w->at < w->images*w->reflections->total && w->used < TOBI_LANES; w->at++) {
-            const int m = w->at/w->reflections->total, *face = w->face[m];
-            int side[3];
-            isph_choose_sides(w->reflections, w->at%w->reflections->total, side);
+        while (w->at < w->images && w->used < TOBI_LANES) {
+            const int *face = w->face[w->at];
+            int side[3] = { -1, -1, -1 };
+            if (w->reflection > 0) isph_choose_sides(&w->reflections, w->reflection, side);
             if (face[1] < 0) isph_walk_add_image(w, &w->plane[face[0]], side);
-            else isph_walk_add_corner(w, face, w->whole[m], side);
+            else isph_walk_add_corner(w, face, w->whole[w->at], side);
+            w->reflection = (w->reflection + 1)%w->reflections.total;
+            w->at += w->reflection == 0;
         }
         if (w->used == TOBI_LANES) return 1;
         for (;; w->k++) {
@@ -304,36 +351,120 @@ TOBI_FN int isph_walk_fill(isph_walk *w)
     }
 }
 
-/* The group at hand; what is missing in it is out of reach. */
-TOBI_FN void isph_walk_load(isph_walk *w, tobi_neighbors *n, isph_image *m)
+/* What is missing in the group at hand is out of reach. */
+TOBI_FN void isph_walk_pad(isph_walk *w)
 {
+    isph_image_group *g = &w->group;
+    for (int k = w->used; k < 8; k++) {
+        g->neighbor[k] = g->mirror[0][k] = -1;
+        g->x[0][k] = 2*(float)w->v->h;
+        g->x[1][k] = g->x[2][k] = g->normal_velocity[k] = g->velocity_change[k] = g->weight[k] = 0;
+        for (int a = 0; a < 3; a++) {
+            g->displacement[a][k] = w->rest.sign[a][k] = g->normal[a][k] = 0;
+            w->rest.velocity[a][k] = w->rest.change[a][k] = 0;
+        }
+    }
+}
+
+/* Its first group; -1: it has none. */
+TOBI_FN int64_t isph_first_group(const isph_view *v, int64_t i)
+{
+    return v->last_link && v->last_link[i] >= 0 ? v->first_group[v->last_link[i]] : -1;
+}
+
+TOBI_FN int isph_places(const isph_image_group *g) { return g->sided || g->corners ? 2 : 1; }
+
+TOBI_FN void isph_put_group(const isph_view *v, isph_walk *w, int64_t g)
+{
+    isph_walk_pad(w);
+    v->group[g].images = w->group;
+    if (isph_places(&w->group) > 1) v->group[g + 1].rest = w->rest;
+}
+
+/* Images of particle i, in groups as they are free. Those beyond the room are counted, and lost. */
+TOBI_FN void isph_list_images(const isph_view *v, int64_t i, double *totals)
+{
+    isph_walk w;
+    (void)totals;
+    if (!v->last_link || v->last_link[i] < 0) return;
+    int64_t *to = &v->first_group[v->last_link[i]];
+    isph_walk_begin(&w, v, i);
+    while (isph_walk_fill(&w)) {
+        const int places = isph_places(&w.group);
+        const int64_t g = __atomic_fetch_add(v->group_count, places, __ATOMIC_RELAXED);
+        if (g + places > v->group_room) continue;
+        isph_put_group(v, &w, g);
+        *to = g;
+        to = &v->group[g].images.next;
+    }
+    *to = -1;
+}
+
+TOBI_FN int isph_has_corners(const isph_view *v, int64_t i)
+{
+    int any = 0;
+    for (int64_t g = isph_first_group(v, i); g >= 0; g = v->group[g].images.next)
+        any |= v->group[g].images.corners;
+    return any;
+}
+
+/* The same images, when bodies have other velocities: those in corners are made anew. */
+TOBI_FN void isph_refresh_images(const isph_view *v, int64_t i, double *totals)
+{
+    isph_walk w;
+    const int anew = isph_has_corners(v, i);
+    (void)totals;
+    if (anew) isph_walk_begin(&w, v, i);
+    for (int64_t g = isph_first_group(v, i), next; g >= 0; g = next) {
+        isph_image_group *q = &v->group[g].images;
+        next = q->next;
+        if (anew && isph_walk_fill(&w)) {
+            w.group.next = next;
+            isph_put_group(v, &w, g);
+        }
+        for (int k = 0; k < TOBI_LANES && !anew; k++) {
+            int sided[3];
+            double normal[3], speed[2];
+            isph_plane p;
+            if (q->mirror[0][k] < 0) break;
+            for (int a = 0; a < 3; a++) sided[a] = q->sided && v->group[g + 1].rest.sign[a][k] < 0;
+            isph_find_plane(v, q->mirror[0][k], q->mirror[1][k], &p);
+            isph_plane_close(&p);
+            isph_plane_along(&p, sided, normal, speed);
+            q->normal_velocity[k] = (float)speed[0];
+            q->velocity_change[k] = (float)speed[1];
+        }
+    }
+}
+
+/* A group of particle i, whose list begins at first. */
+TOBI_FN void isph_load_group(const isph_view *v, int64_t i, int64_t first, int64_t group, tobi_neighbors *n,
+                             isph_image *m)
+{
+    const isph_image_group *g = &v->group[group].images;
     lane_int x, y, z;
-    for (int k = w->used; k < TOBI_LANES; k++) {
-        w->index[k] = (int32_t)w->i;
-        w->entry[k] = -1;
-        w->x[0][k] = 2*(float)w->v->h;
-        w->x[1][k] = w->x[2][k] = w->normal_velocity[k] = w->velocity_change[k] = w->weight[k] = 0;
-        for (int a = 0; a < 3; a++) w->displacement[a][k] = w->sign[a][k] = w->normal[a][k] = 0;
-        for (int a = 0; a < 3; a++) w->corner_velocity[a][k] = w->corner_change[a][k] = 0;
+    for (int k = 0; k < TOBI_LANES; k++) {
+        m->index[k] = g->neighbor[k] < 0 ? (int32_t)i : v->list[first + g->neighbor[k]];
+        m->entry[k] = g->neighbor[k] < 0 ? -1 : first + g->neighbor[k];
     }
-    n->j = w->index;
-    n->index = lane_load_index(w->index);
-    lane_load_record(w->v->record, n->j, &x, &y, &z, &n->w);
-    n->dx = lane_load(w->x[0]); n->dy = lane_load(w->x[1]); n->dz = lane_load(w->x[2]);
+    n->j = m->index;
+    n->index = lane_load_index(m->index);
+    lane_load_record(v->record, n->j, &x, &y, &z, &n->w);
+    n->dx = lane_load(g->x[0]); n->dy = lane_load(g->x[1]); n->dz = lane_load(g->x[2]);
     n->r2 = isph_square(n);
+    const int whole = isph_places(g) == 1;
+    const isph_image_rest *rest = &v->group[group + 1].rest;
     for (int a = 0; a < 3; a++) {
-        m->sign[a] = lane_load(w->sign[a]);
-        m->displacement[a] = lane_load(w->displacement[a]);
-        m->normal[a] = lane_load(w->normal[a]);
+        m->sign[a] = whole ? lane_set(1) : lane_load(rest->sign[a]);
+        m->displacement[a] = lane_load(g->displacement[a]);
+        m->normal[a] = lane_load(g->normal[a]);
     }
-    m->normal_velocity = lane_load(w->normal_velocity);
-    m->velocity_change = lane_load(w->velocity_change);
-    m->weight = lane_load(w->weight);
-    m->entry = w->entry;
-    m->corners = w->corners;
-    if (!m->corners) return;
-    for (int a = 0; a < 3; a++) {
-        m->corner_velocity[a] = lane_load(w->corner_velocity[a]);
-        m->corner_change[a] = lane_load(w->corner_change[a]);
+    m->normal_velocity = lane_load(g->normal_velocity);
+    m->velocity_change = lane_load(g->velocity_change);
+    m->weight = lane_load(g->weight);
+    m->corners = g->corners;
+    for (int a = 0; a < 3 && m->corners; a++) {
+        m->corner_velocity[a] = lane_load(rest->velocity[a]);
+        m->corner_change[a] = lane_load(rest->change[a]);
     }
 }

@@ -13,7 +13,8 @@ typedef struct isph_image {
     lane displacement[3];            /* m, from j to its image                                      */
     float gravity[3];                /* m/s2, that i feels at rest                                  */
     /* bodies only */
-    const int64_t *entry;            /* of each pair, in place of k                                 */
+    int32_t index[8];                /* of each neighbour                                           */
+    int64_t entry[8];                /* of each pair, in place of k                                 */
     lane weight;                     /* 1; less at edges                                            */
     lane normal[3];
     lane normal_velocity, velocity_change;     /* m/s: of the surface along the normal; its change  */

@@ -22,12 +22,9 @@
 
 /* The same for pairs at bodies. */
 #define ISPH_AT_BODIES(K, SHAPE)                                                                    \
-    if (v->last_link && v->last_link[i] >= 0) {                                                     \
-        isph_walk walk = isph_walk_begin(v, i, &reflections, first, groups);                        \
-        while (isph_walk_fill(&walk)) {                                                             \
-            isph_walk_load(&walk, &near, &image);                                                   \
-            K##_pair(v, i, &near, &image, &acc, SHAPE, ISPH_BODY);                                  \
-        }                                                                                           \
+    for (int64_t g = isph_first_group(v, i); g >= 0; g = v->group[g].images.next) {                 \
+        isph_load_group(v, i, first, g, &near, &image);                                             \
+        K##_pair(v, i, &near, &image, &acc, SHAPE, ISPH_BODY);                                      \
     }
 
 #define ISPH_LOOP(K, SHAPE, NAME)                                                                   \

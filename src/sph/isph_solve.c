@@ -284,7 +284,8 @@ int64_t isph_solver_bytes(const isph_solver *m)
 {
     return (m->rows + TOBI_PAD_ROWS)*row_bytes() + m->krylov_rows*(int64_t)sizeof *m->krylov +
            m->entries*(int64_t)sizeof *m->view.entry +
-           m->mirrors*(int64_t)sizeof *m->mirror + isph_forces_bytes(m);
+           m->mirrors*(int64_t)(sizeof *m->mirror + sizeof *m->view.first_group) +
+           m->view.group_room*(int64_t)sizeof *m->view.group + isph_forces_bytes(m);
 }
 
 void isph_solver_free(isph_solver *m)
@@ -294,5 +295,7 @@ void isph_solver_free(isph_solver *m)
     tobi_array_free(m->krylov);
     isph_forces_free(m);
     tobi_array_free(m->mirror);
+    tobi_array_free(m->view.first_group);
+    tobi_array_free(m->view.group);
     tobi_array_free(m->memory);
 }

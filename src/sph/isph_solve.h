@@ -43,6 +43,7 @@ typedef struct isph_solver {
     int64_t entries;                 /* room for them                                               */
     isph_mirror *mirror;             /* of s->links, see isph_bodies.h                              */
     int64_t mirrors;                 /* room for them                                               */
+    int64_t groups;                  /* of images, that are in use                                  */
     int corners;                     /* 1: those of corners, further faces, follow all of the entries */
     isph_sweeps sweeps;
     int coupled;                     /* 1: bodies move by forces                                    */

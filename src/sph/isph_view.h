@@ -19,10 +19,28 @@ typedef struct isph_mirror {
     int32_t body, previous;          /* previous: the particle's next plane, of another face of the body or
                                         of an earlier body, -1 = none                               */
     double offset[3];                /* m, from the closest point of the surface to the particle    */
-    double normal[3], velocity[3];   /* 1, m/s, of the surface there                                */
-    double velocity_change[3];       /* m/s, of that velocity since the step before                 */
+    double normal[3];                /* of the surface there                                        */
     double share;                    /* 1: how much of the half space behind is body, 0 to 1        */
+    double velocity[3];              /* m/s, of the surface there                                   */
+    double velocity_change[3];       /* m/s, of that velocity since the step before                 */
 } isph_mirror;
+
+/* Eight images of pairs of one particle at bodies. */
+typedef struct isph_image_group {
+    float x[3][8], displacement[3][8];       /* m, from the image to the particle, from j to its image */
+    float normal[3][8], weight[8];   /* 1                                                           */
+    float normal_velocity[8], velocity_change[8];    /* m/s                                         */
+    int32_t neighbor[8];             /* of the particle's list, -1: itself                          */
+    int32_t mirror[2][8];            /* of the two particles; -1: there is no image                 */
+    int64_t next;                    /* group of the particle, -1: none                             */
+    int sided, corners;              /* 1: some are images in sides too, in several planes. Then the next
+                                        place has the rest of the group                             */
+} isph_image_group;
+
+/* Of images in sides, signs of velocities, -1 along mirrored axes; of those in several planes, m/s. */
+typedef struct isph_image_rest { float sign[3][8], velocity[3][8], change[3][8]; } isph_image_rest;
+
+typedef union isph_group_place { isph_image_group images; isph_image_rest rest; } isph_group_place;
 
 /* Force and torque on a body, about its centre, by one pascal of a particle: m2, m3; eq. (13). */
 typedef struct isph_coupling { double f[6]; } isph_coupling;
@@ -84,6 +102,9 @@ typedef struct isph_view {
     const uint16_t *list_groups;
     const int32_t *last_link;        /* last mirror of each particle, < 0: none; NULL: no bodies    */
     const isph_mirror *mirror;
+    isph_group_place *group;         /* images at bodies                                            */
+    int64_t *group_count, group_room;
+    int64_t *first_group;            /* of the particle that has this as its last link              */
     const tobi_boundary_link *link;  /* which particle sees which body; mirror and coupling go with it */
     const isph_coupling *coupling;
     const double (*answer)[6];       /* of each body: accelerations, m/s2 and rad/s2                */

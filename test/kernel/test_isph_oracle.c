@@ -26,7 +26,7 @@ static tobi_smoothing_constants scaled;
     X(invariant)
 
 /* In cases with a body its face is where the lower side along x was; that is FAR supports further down. */
-enum { FAR = 10 };
+enum { FAR = 10, GROUPS = 20000 };
 static const double FLOW = 0.7, CHANGE = 0.2;      /* m/s, of the face along x, and since the last step */
 static int bodies;
 static tobi_double3 *shifted;
@@ -34,6 +34,7 @@ static int32_t *near_body;
 static isph_mirror *mirror;
 static tobi_boundary_link *links;
 static isph_coupling *couplings;
+static int64_t groups;               /* of images at the body; below, room for them */
 static const float viscosities[1] = {1e-3f};      /* m2/s */
 static const uint8_t fluids[4000];
 static const double answers[1][6] = {{0.3, -0.2, 0.1, 0.7, -0.4, 0.2}};
@@ -96,6 +97,10 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     view.mirror = mirror = calloc((size_t)count, sizeof *mirror);
     view.position = shifted = calloc((size_t)count, sizeof *shifted);
     near_body = calloc((size_t)count, sizeof *near_body);
+    view.group = calloc(GROUPS, sizeof *view.group);
+    view.group_room = GROUPS;
+    view.group_count = &groups;
+    view.first_group = calloc((size_t)count, sizeof *view.first_group);
     view.link = links = calloc((size_t)count, sizeof *links);
     view.coupling = couplings = calloc((size_t)count, sizeof *couplings);
     view.answer = answers;
@@ -121,6 +126,8 @@ static void close_pool(void)
     free(mirror);
     free(shifted);
     free(near_body);
+    free(view.group);
+    free(view.first_group);
     free(links);
     free(couplings);
     poisson_drop(&pool);
@@ -136,7 +143,7 @@ typedef struct image { int64_t j; double x[3], r, displacement[3]; int flip[3]; 
 typedef struct sums {
     double moment[6], concentration, gradient_c[3], product, divergence, difference, rest, row,
            gradient[3], core[3], normal[3], slope[9], bend[3], count, cone, mean[3], all[3],
-           plain[3];
+           plain[3], in_face;
 } sums;
 static void add_choices(int64_t i, const image *m, const double u[3], double f, int plain, sums *s);
 
@@ -175,6 +182,7 @@ static void add_pair(int64_t i, const image *m, sums *s)
     for (int k = 0; k < view.dimension; k++) lift += view.density*view.gravity[k]*m->displacement[k];
     if (face) lift -= view.density/view.dt*CHANGE*m->displacement[0];
     image_velocity(m, u);
+    s->in_face += face;
     s->concentration += weight(m->r);
     add_choices(i, m, u, f, !image, s);
     s->product += a*(view.in[i] - view.in[m->j]);
@@ -246,19 +254,7 @@ static double loss_of(const sums *s)
 }
 static double clip(double x) { return fmin(fmax(x, 0), 1); }
 
-/* How surely it is a gap beside the body that i misses. The face has the normal x: c_x > 0 says that
-   neighbours are missing towards it. */
-static double gap_of(int64_t i, const sums *s)
-{
-    const double *c = s->gradient_c, d = view.spacing, away = c[0] > 0 ? 0 : c[0],
-                 rest = sqrt(away*away + c[1]*c[1] + c[2]*c[2]);
-    const isph_mirror *m = near_body[i] >= 0 ? &mirror[near_body[i]] : NULL;
-    double closing = 0;
-    if (!view.open || !m || !(loss_of(s) > 0.05)) return 0;
-    for (int a = 0; a < 3; a++) closing += (m->velocity[a] - (&view.velocity[i].x)[a])*m->normal[a];
-    return clip((0.25 - rest*d)/0.1)*clip((0.4 - loss_of(s))/0.1)*clip((2.25 - m->offset[0]/d)/0.5)*
-           clip((0.3 - closing/view.gap_speed)/0.2);
-}
+#include "kernel/isph_body_oracle.h"
 
 static double gate_of(int64_t i, const sums *s)
 {
@@ -429,6 +425,7 @@ static void prepare(int k)
     view.gravity_dt = !strcmp(kernels[k].name, "isph_rows") || !strcmp(kernels[k].name, "isph_balance")
                           ? (float)view.dt : 0;
     view.source_mean = MEAN;
+    prepare_images(kernels[k].name);
     view.last_link = bodies || !strcmp(kernels[k].name, "isph_add_answer") ? near_body : NULL;
     if (!strcmp(kernels[k].name, "isph_store_pressure"))
         for (int64_t i = 0; i < view.count; i++) view.solution[i] *= 0.9;
@@ -549,7 +546,10 @@ static void the_matrix_is_symmetric(void **state)
         double forth = 0, back = 0;
         double *x = calloc((size_t)view.count, sizeof *x);
         const double *y = view.in;
-        for (int n = 0; n < 4; n++) run(kernel_at(kernel, n), NULL);
+        for (int n = 0; n < 6; n++) {
+            prepare(n);
+            run(kernel_at(kernel, n), NULL);
+        }
         for (int64_t i = 0; i < view.count; i++) x[i] = poisson_random();
         run(kernel->isph_multiply, NULL);
         for (int64_t i = 0; i < view.count; i++) forth += x[i]*view.out[i];
