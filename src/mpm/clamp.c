@@ -58,48 +58,6 @@ static int find_holder(const tobi_system *s, const tobi_solid *solid, const doub
     return -1;
 }
 
-/* Newton's method; eight rounds are plenty for what is a shape. */
-enum { ROUNDS = 8 };
-static const double EXACT = 1e-7, ARM = 1e-3;      /* spacings */
-
-/* The place at rest, about the centre, that the motion of a body takes to x at the start. What it finds is
-   the caller's to check. */
-static void find_rest(const tobi_system *s, const tobi_body *b, const double x[3], tobi_float4 *out)
-{
-    const double arm = ARM*s->smoothing.spacing;
-    double rest[4][3], now[4][3], m[9], inverse[9], off[3];
-    for (int a = 0; a < 3; a++) rest[0][a] = x[a] + b->lower[a];
-    for (int round = 0; round < ROUNDS; round++) {
-        for (int k = 1; k < 4; k++)
-            for (int a = 0; a < 3; a++) rest[k][a] = rest[0][a] + (a == k - 1 ? arm : 0);
-        const tobi_status status =
-            tobi_body_ask_motion(b, s->sim->time, 4, (const double (*)[3])rest, now, NULL);
-        if (status != TOBI_OK) break;
-        for (int a = 0; a < 3; a++) {
-            off[a] = now[0][a] - b->lower[a] - x[a];
-            for (int k = 0; k < 3; k++) m[3*a + k] = (now[1 + k][a] - now[0][a])/arm;
-        }
-        if (vec3_dot(off, off) < pow(EXACT*s->smoothing.spacing, 2) || !tobi_rigid_invert(m, inverse)) break;
-        for (int a = 0; a < 3; a++) rest[0][a] -= vec3_dot(inverse + 3*a, off);
-    }
-    for (int a = 0; a < 3; a++) (&out->x)[a] = (float)(rest[0][a] - b->rest.centre[a]);
-}
-
-tobi_status mpm_clamp_find_stray(const tobi_system *s, int64_t i, double *stray, tobi_error *err)
-{
-    const tobi_float4 place = *place_of(s, i);
-    const tobi_body *b = &s->sim->bodies[mpm_clamp_body(s, i)];
-    double rest[1][3], now[1][3], square = 0;
-    *stray = 0;
-    if (!b->deforms) return TOBI_OK;
-    for (int a = 0; a < 3; a++) rest[0][a] = b->rest.centre[a] + (double)(&place.x)[a];
-    TOBI_TRY(tobi_body_ask_motion(b, s->sim->time, 1, (const double (*)[3])rest, now, err));
-    for (int a = 0; a < s->box.dimension; a++)
-        square += pow(now[0][a] - b->lower[a] - (&s->particles.position[i].x)[a], 2);
-    *stray = sqrt(square);
-    return TOBI_OK;
-}
-
 void mpm_clamp_place(const tobi_system *s, int64_t i)
 {
     const tobi_particles *p = &s->particles;
@@ -116,8 +74,36 @@ void mpm_clamp_place(const tobi_system *s, int64_t i)
     tobi_quaternion_matrix(b->rigid.orientation, m);
     for (int a = 0; a < 3; a++)
         (&place[i].x)[a] = (float)(m[0][a]*arm[0] + m[1][a]*arm[1] + m[2][a]*arm[2]);
-    if (b->deforms) find_rest(s, b, x, &place[i]);
     place[i].w = (float)(inside ? -1 - body : 1 + body);
+}
+
+/* Newton's method; eight rounds are plenty for what is a shape. */
+enum { ROUNDS = 8 };
+static const double EXACT = 1e-7, ARM = 1e-3;      /* spacings */
+
+tobi_status mpm_clamp_find_rest(const tobi_system *s, int64_t i, double *stray, tobi_error *err)
+{
+    tobi_float4 *place = &mpm_fields_of(&s->particles)->clamp[i];
+    const tobi_body *b = &s->sim->bodies[mpm_clamp_body(s, i)];
+    const double *x = &s->particles.position[i].x, arm = ARM*s->smoothing.spacing;
+    double rest[4][3], now[4][3], m[9], inverse[9], off[3];
+    *stray = 0;
+    if (!b->deforms) return TOBI_OK;
+    for (int a = 0; a < 3; a++) rest[0][a] = x[a] + b->lower[a];
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int k = 1; k < 4; k++)
+            for (int a = 0; a < 3; a++) rest[k][a] = rest[0][a] + (a == k - 1 ? arm : 0);
+        TOBI_TRY(tobi_body_ask_motion(b, s->sim->time, 4, (const double (*)[3])rest, now, err));
+        for (int a = 0; a < 3; a++) {
+            off[a] = now[0][a] - b->lower[a] - x[a];
+            for (int k = 0; k < 3; k++) m[3*a + k] = (now[1 + k][a] - now[0][a])/arm;
+        }
+        *stray = sqrt(vec3_dot(off, off));
+        if (*stray < EXACT*s->smoothing.spacing || !tobi_rigid_invert(m, inverse)) break;
+        for (int a = 0; a < 3; a++) rest[0][a] -= vec3_dot(inverse + 3*a, off);
+    }
+    for (int a = 0; a < 3; a++) (&place->x)[a] = (float)(rest[0][a] - b->rest.centre[a]);
+    return TOBI_OK;
 }
 
 static tobi_status reserve(mpm_clamp *c, int bodies, int64_t count, tobi_error *err)

@@ -34,8 +34,9 @@ int mpm_clamp_body(const tobi_system *s, int64_t i);
 int mpm_clamp_hides(const tobi_system *s, int64_t i);
 /* For a new particle, whose body stands where it starts: whether it is held, and where. */
 void mpm_clamp_place(const tobi_system *s, int64_t i);
-/* m, of a held particle at the start from where its body has it. */
-tobi_status mpm_clamp_find_stray(const tobi_system *s, int64_t i, double *stray, tobi_error *err);
+/* Then, for one that a body holds which deforms: its place at rest, that the motion takes to where it starts;
+   *stray: how far from there, m. A motion is asked by one thread at a time. */
+tobi_status mpm_clamp_find_rest(const tobi_system *s, int64_t i, double *stray, tobi_error *err);
 /* In every step, before contact: impulses to nodes and bodies. fresh: 1 if particles were sorted. */
 tobi_status mpm_clamp_hold(mpm_clamp *c, tobi_system *s, const mpm_grid *g, const mpm_view *v, int fresh,
                            tobi_error *err);

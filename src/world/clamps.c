@@ -71,12 +71,12 @@ tobi_status tobi_world_find_clamps(tobi_world *w, tobi_error *err)
 /* Of a spacing: farther from where the motion has it at the start no particle is. */
 static const double STRAY = 0.01;
 
-static tobi_status check_stray(const tobi_world *w, const tobi_solid *d, int64_t i, tobi_error *err)
+static tobi_status find_rest(const tobi_world *w, const tobi_solid *d, int64_t i, tobi_error *err)
 {
     const tobi_system *s = tobi_world_solids(w);
     const tobi_double3 x = s->particles.position[i];
     double stray;
-    TOBI_TRY(mpm_clamp_find_stray(s, i, &stray, err));
+    TOBI_TRY(mpm_clamp_find_rest(s, i, &stray, err));
     if (stray <= STRAY*s->smoothing.spacing) return TOBI_OK;
     return tobi_fail(err, TOBI_INVALID, "solid '%s': the motion of body '%s' takes no place to (%g, %g, %g) "
                      "m, where a particle that it holds starts", d->name,
@@ -84,15 +84,16 @@ static tobi_status check_stray(const tobi_world *w, const tobi_solid *d, int64_t
                      x.z + s->box.lower[2]);
 }
 
-/* Refuses a body, number n of those that the solid names, that holds none of its particles. */
-static tobi_status check_clamp(const tobi_world *w, int solid, int n, tobi_error *err)
+/* Completes the clamps of a body, number n of those that the solid names; refuses one that holds none of its
+   particles. */
+static tobi_status start_clamp(const tobi_world *w, int solid, int n, tobi_error *err)
 {
     const tobi_system *s = tobi_world_solids(w);
     const tobi_solid *d = &s->solids[solid];
     int64_t held = 0;
     for (int64_t i = 0; i < s->particles.count; i++) {
         if (s->particles.fluid[i] != solid || mpm_clamp_body(s, i) != d->clamp[n]) continue;
-        TOBI_TRY(at_name(d, solid, n, check_stray(w, d, i, err), err));
+        TOBI_TRY(at_name(d, solid, n, find_rest(w, d, i, err), err));
         held++;
     }
     if (held > 0) return TOBI_OK;
@@ -104,10 +105,10 @@ static tobi_status check_clamp(const tobi_world *w, int solid, int n, tobi_error
     return at_name(d, solid, n, status, err);
 }
 
-tobi_status tobi_world_check_clamps(const tobi_world *w, tobi_error *err)
+tobi_status tobi_world_start_clamps(const tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = tobi_world_solids(w);
     for (int k = 0; s && k < s->solid_count; k++)
-        for (int n = 0; n < s->solids[k].clamp_count; n++) TOBI_TRY(check_clamp(w, k, n, err));
+        for (int n = 0; n < s->solids[k].clamp_count; n++) TOBI_TRY(start_clamp(w, k, n, err));
     return TOBI_OK;
 }

@@ -269,7 +269,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(fill_systems(w, err));
     TOBI_TRY(tobi_fit_note(w, err));
     TOBI_TRY(tobi_world_note_regions(w, err));
-    TOBI_TRY(tobi_world_check_clamps(w, err));
+    TOBI_TRY(tobi_world_start_clamps(w, err));
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));
     TOBI_TRY(tobi_world_note_clamps(w, err));
     TOBI_TRY(tobi_world_note_liquids(w, err));

@@ -71,17 +71,10 @@ static void a_tile_goes_with_the_wave(void **state)
         const tobi_particles *p = &solids->particles;
         const tobi_body *b = &world->sim.bodies[0];
         int64_t held = 0;
-        for (int64_t i = 0; i < p->count; i++) {
-            double stray;
-            if (mpm_clamp_body(solids, i) < 0) continue;
-            OK(mpm_clamp_find_stray(solids, i, &stray, &err));
-            if (!(stray < 1e-4*SPACING)) fail_msg("a particle starts %g m from its place", stray);
-            held++;
-        }
+        for (int64_t i = 0; i < p->count; i++) held += mpm_clamp_body(solids, i) >= 0;
         if (dimension == 2) assert_in_range(held, 16*2, 16*4);
-        double most = 0;
+        double most = 0, first = 0;
         while (world->sim.time < 0.4) {
-            solid_step(world, 10);
             for (int64_t i = 0; i < p->count; i++) {
                 double rest[1][3], now[1][3], square = 0;
                 if (mpm_clamp_body(solids, i) < 0) continue;
@@ -92,7 +85,10 @@ static void a_tile_goes_with_the_wave(void **state)
                     square += pow(now[0][a] - b->lower[a] - (&p->position[i].x)[a], 2);
                 most = fmax(most, sqrt(square));
             }
+            if (world->sim.time == 0) first = most;
+            solid_step(world, 10);
         }
+        if (!(first < 1e-4*SPACING)) fail_msg("a particle starts %g m from its place", first);
         if (!(most < 0.1*SPACING)) fail_msg("%d-D: a particle strays by %g m", dimension, most);
         tobi_world_destroy(world);
     }
