@@ -2,6 +2,7 @@
    sooner, and the checkpoint has the step before. A second one ends the program at once, which costs nothing
    but the time since the last checkpoint. So does one before the first step. */
 #include "app.h"
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 
@@ -78,11 +79,15 @@ static int end_run(const tobi_world *world, tobi_run *run, const drive_options *
     return !done ? EXIT_INTERRUPTED : tobi_run_unwritten(run) ? EXIT_UNWRITTEN : 0;
 }
 
+/* The state at which it ended has an output too, for who wants to see why, if it is one: not after a disk or
+   memory failed, and not of numbers that are none. */
 static int end_failed_run(const tobi_world *world, tobi_run *run, const drive_options *o, tobi_status status,
                           const tobi_error *err)
 {
     tobi_error more;
     complain("%s", err->text);
+    if (status != TOBI_NO_MEMORY && status != TOBI_IO && isfinite(tobi_world_info(world)->speed_max))
+        tobi_run_output_end(run, &more);
     tobi_run_finish(run, status == TOBI_DIVERGED ? "diverged" : status == TOBI_STALLED ? "stalled" : "failed",
                     &more);
     return complain("the results up to t = %.9g s are in %s", tobi_world_time(world), o->dir);

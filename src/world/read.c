@@ -228,6 +228,13 @@ static const tobi_output *find_in_world(const tobi_world *w, const char *name)
     return NULL;
 }
 
+/* Of a world that has diverged nothing is refreshed, because neighbours may be anywhere: what a refresh makes
+   is not there. */
+static int is_stale(const tobi_world *w, const tobi_system *s)
+{
+    return w->failure.status == TOBI_DIVERGED && s->method->refresh;
+}
+
 /* One particle; a field that its system does not have is 0. */
 static void read_particle(const tobi_world *w, const tobi_system *s, const tobi_output *f, int64_t i,
                           double *out)
@@ -237,7 +244,9 @@ static void read_particle(const tobi_world *w, const tobi_system *s, const tobi_
     else if (!find_name(s->method, f->name)) memset(out, 0, (size_t)f->components*sizeof *out);
     else if (!strcmp(f->name, "piece")) out[0] = w->pieces.of[i];
     else if (!strcmp(f->name, "texture_coordinates")) read_texture(w, s, i, out);
-    else if (!read_plain(s, f->name, i, out)) s->method->read(s, f->name, i, out);
+    else if (read_plain(s, f->name, i, out)) return;
+    else if (!is_stale(w, s)) s->method->read(s, f->name, i, out);
+    else for (int c = 0; c < f->components; c++) out[c] = NAN;
 }
 
 typedef struct reading {

@@ -45,6 +45,10 @@ check "the end of a run shorter than the interval has a picture" test -s short/f
 rm -r short
 expect 0 "" run drop.json --out short --quiet --frames --set end_time=0
 rm -rf short/fluid* short/frames/frame_000001.png
+expect 1 "diverged" run drop.json --out lost --quiet --frames --set speed_limit=0.5 --set output.interval=1 \
+       --set 'fluids[0].fill[0].box.max=[0.5, 0.5]'
+check "the moment at which a run diverges has a picture" test -s lost/frames/frame_000001.png
+check "and a row" test "$(wc -l < lost/history.csv)" = 3
 touch there.mp4
 expect 1 "there.mp4 exists; --force replaces it" movie "100%d run" --out there.mp4
 expect 1 "there.mp4 exists; --force replaces it" run drop.json --out again --quiet --movie there.mp4

@@ -1,5 +1,6 @@
 /* What the public calls and the files below them refuse, each with its text: one case per message
    that no other test reaches. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -240,6 +241,31 @@ static void divergence(void **state)
     tobi_world_destroy(world);
 }
 
+/* Every field of a world that has diverged can be read; what follows from neighbours is no number. */
+static void diverged_worlds_are_readable(void **state)
+{
+    (void)state;
+    static const char *const methods[] = { "dfsph", "wcsph", "isph", "eisph" };
+    for (int k = 0; k < 4; k++) {
+        double buffer[9*150] = { 0 }, fast[3*150] = { 0 };
+        tobi_world_def def = make_def();
+        def.method = methods[k];
+        def.speed_limit = 10;
+        tobi_world *world = make_world(&def, 1);
+        fast[4] = 50;
+        assert_int_equal(tobi_world_write(world, "velocity", fast, 150, NULL), TOBI_OK);
+        REFUSED(tobi_world_step(world, 1e-4, NULL, &err), TOBI_DIVERGED, "the limit is 10 m/s");
+        const char *field;
+        for (int n = 0; (field = tobi_method_field(methods[k], n)); n++)
+            assert_int_equal(tobi_world_read(world, TOBI_FLUID, field, buffer, 9*150, NULL), TOBI_OK);
+        assert_int_equal(tobi_world_read(world, TOBI_FLUID, "velocity", buffer, 9*150, NULL), TOBI_OK);
+        assert_true(buffer[4] > 10);
+        assert_int_equal(tobi_world_read(world, TOBI_FLUID, "pressure", buffer, 150, NULL), TOBI_OK);
+        assert_true(isnan(buffer[0]));
+        tobi_world_destroy(world);
+    }
+}
+
 static void checkpoints_of_others(void **state)
 {
     (void)state;
@@ -440,7 +466,7 @@ int main(void)
         cmocka_unit_test(motions_of_few_times),
         cmocka_unit_test(particles_beyond_the_machine),
         cmocka_unit_test(fields),
-        cmocka_unit_test(divergence),
+        cmocka_unit_test(divergence), cmocka_unit_test(diverged_worlds_are_readable),
         cmocka_unit_test(checkpoints_of_others),
         cmocka_unit_test(meshes),
         cmocka_unit_test(files),
