@@ -5,6 +5,7 @@
 #include "sph/eisph.k.h"
 #include "sph/isph_choices.k.h"
 #include "sph/isph_loop.h"
+#include "sph/isph_shift.k.h"
 #include "sph/isph_time.k.h"
 #include "sph/phases.k.h"
 #include "sph/pressure.k.h"

@@ -188,7 +188,6 @@ static void find_geometry(tobi_system *s, isph *m, double *totals)
     if (m->def.surface_rule == TOBI_SURFACE_CONE) launch(s, m, m->kernel->isph_geometry, NULL);
     if (m->solver.view.by_mark) launch(s, m, m->kernel->isph_mark, NULL);
     launch(s, m, m->kernel->isph_geometry, totals);
-    if (m->solver.view.keeps_volume) launch(s, m, m->kernel->isph_invariant, NULL);
 }
 
 tobi_status isph_begin(tobi_system *s, tobi_error *err)

@@ -40,14 +40,7 @@
 /* Error of volume that full vessels leave to the shift: what disorder makes, and the source would turn into
    motion. */
 #define ISPH_VOLUME_LEFT 0.02
-/* Size of n, eq. (10b), from which the shift begins to lose its part along n, and has lost it. */
-#define ISPH_LACK_BEGIN 0.3
-#define ISPH_LACK_FULL 0.8
-/* Shift: pairs nearer than CORE spacings go apart by PUSH of the overlap each; SHIFT_MAX in spacings. */
-#define ISPH_CORE 0.8f
-#define ISPH_PUSH 0.25f
-#define ISPH_SHIFT_MAX 0.1
-/* The same in full vessels, where only particles that are next to alone in a cavity are a surface. */
+/* Of the loss of neighbours in full vessels: only particles next to alone in a cavity are a surface. */
 #define ISPH_CAVITY_BEGIN 0.6
 #define ISPH_CAVITY_OPEN 0.8
 /* Of tr M/dim: less are drops, which do not shift and know no gradient of the velocity; more are the bulk. */
@@ -85,14 +78,19 @@ TOBI_FN isph_tensor isph_invert(const double m[6])
     return t;
 }
 
-/* M, the sums of V W and V grad W, and what bodies have of tr M; eq. (2) to (5). totals: excess of the kernel
-   sum away from a free surface, and the number of particles there. */
-typedef struct isph_geometry_acc { lane xx, yy, zz, xy, yz, zx, w, gx, gy, gz, bodies; } isph_geometry_acc;
+/* M, the sums of V W and V grad W, and what bodies have of tr M; eq. (2) to (5). Where volume is kept, also
+   those of the velocity's gradient, eq. (6b). totals: excess of the kernel sum away from a free surface, and
+   the number of particles there. */
+typedef struct isph_geometry_acc {
+    lane xx, yy, zz, xy, yz, zx, w, gx, gy, gz, bodies, u[3], slope[9];
+} isph_geometry_acc;
 
 TOBI_FN void isph_geometry_start(const isph_view *v, int64_t i, isph_geometry_acc *a)
 {
     double s[10] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
     a->xx = a->yy = a->zz = a->xy = a->yz = a->zx = a->w = a->gx = a->gy = a->gz = a->bodies = lane_set(0);
+    for (int c = 0; c < 3; c++) a->u[c] = lane_set((&v->velocity[i].x)[c]);
+    for (int c = 0; c < 9; c++) a->slope[c] = lane_set(0);
     if (isph_soft_last(v, i) < 0) return;
     ISPH_SOFT_LINKS(v, i, k) {
         const sph_soft_link *l = &v->soft[k];
@@ -120,6 +118,14 @@ TOBI_FN void isph_geometry_pair(const isph_view *v, int64_t i, const tobi_neighb
     a->gx += x; a->gy += y; a->gz += z;
     a->w += isph_weight(v, n, m, shape, kind);
     if (kind == ISPH_BODY) a->bodies += f*n->r2;
+    if (!v->keeps_volume) return;
+    const lane at[3] = {n->dx, n->dy, n->dz};
+    lane u[3];
+    isph_velocity(v, n, m, kind, u);
+    for (int b = 0; b < 3; b++) {
+        u[b] = f*(u[b] - a->u[b]);
+        for (int c = 0; c < 3; c++) a->slope[3*b + c] += u[b]*at[c];
+    }
 }
 
 /* Least eigenvalue of M, in 2-D of its upper left part. */
@@ -189,6 +195,21 @@ TOBI_FN double isph_gap(const isph_view *v, int64_t i, const tobi_float4 *c, dou
     return gap*isph_fade(loss, ISPH_GAP_LOSS_SHUT, ISPH_GAP_LOSS_FREE);
 }
 
+/* tr (grad v grad v), 1/s2, eq. (6b), once B and tr M are known. */
+TOBI_FN double isph_invariant(const isph_view *v, int64_t i, const isph_geometry_acc *a)
+{
+    double g[9], sum = 0;
+    if (v->trace[i] < ISPH_DROP*v->dimension || isph_soft_last(v, i) >= 0) return 0;
+    for (int b = 0; b < 3; b++) {
+        double raw[3];
+        for (int c = 0; c < 3; c++) raw[c] = -v->slope*lane_sum(a->slope[3*b + c]);
+        isph_apply(&v->inverse[i], raw, &g[3*b]);
+    }
+    for (int b = 0; b < v->dimension; b++)
+        for (int c = 0; c < v->dimension; c++) sum += g[3*b + c]*g[3*c + b];
+    return sum;
+}
+
 TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_acc *a, double *totals)
 {
     const double k = v->slope;
@@ -219,6 +240,7 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
     v->concentration[i] = (float)filled;
     v->concentration_gradient[i] = isph_weigh_gradient(v, gradient, trace);
     v->inverse[i] = isph_invert(m);
+    if (v->keeps_volume) v->invariant[i] = (float)isph_invariant(v, i, a);
 }
 
 /* v += dt g, and what neighbours read while rows are made. */
@@ -466,117 +488,4 @@ TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projecti
     for (int c = 0; c < 3; c++) g[c] += mean*(&v->concentration_gradient[i].x)[c];
     totals[0] += sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
     for (int c = 0; c < v->dimension; c++) (&v->velocity[i].x)[c] -= (float)(v->dt/v->density*g[c]);
-}
-
-/* The shift of positions, eq. (10), as an acceleration over `way` in accel, and the change of velocity that
-   goes with it, eq. (10a). totals: [0] sum, [6] largest of |div v|, 1/s, away from a free surface. */
-typedef struct isph_shift_acc { lane ux, uy, uz, core[3], normal[3], slope[9], bend[3]; } isph_shift_acc;
-
-/* Points of soft solids push by their core, and mirror velocities. */
-TOBI_FN void isph_shift_soft(const isph_view *v, int64_t i, isph_shift_acc *a)
-{
-    double n[3], core[3] = {0, 0, 0}, bend[3] = {0, 0, 0}, slope[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
-    isph_soft_normal(v, i, n);
-    ISPH_SOFT_LINKS(v, i, k) {
-        const sph_soft_link *l = &v->soft[k];
-        const double speed = isph_soft_speed(v, i, l, n)/v->slope;
-        double r2 = 0;
-        for (int c = 0; c < 3; c++) r2 += (double)l->gradient[c]*l->gradient[c]/((double)l->rate*l->rate);
-        const double r = sqrt(r2), push = ISPH_PUSH*isph_larger(ISPH_CORE*v->spacing - r, 0)/(r + 1e-20);
-        for (int b = 0; b < 3; b++) {
-            core[b] -= push*l->gradient[b]/l->rate;
-            bend[b] += speed*n[b]*l->rate;
-            for (int c = 0; c < 3; c++) slope[3*b + c] -= speed*n[b]*l->gradient[c];
-        }
-    }
-    for (int b = 0; b < 3; b++) a->core[b] = isph_first(core[b]);
-    for (int b = 0; b < 3; b++) a->bend[b] = isph_first(bend[b]);
-    for (int k = 0; k < 9; k++) a->slope[k] = isph_first(slope[k]);
-}
-
-TOBI_FN void isph_shift_start(const isph_view *v, int64_t i, isph_shift_acc *a)
-{
-    const tobi_float4 u = v->velocity[i];
-    a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
-    for (int k = 0; k < 3; k++) a->core[k] = a->normal[k] = a->bend[k] = lane_set(0);
-    for (int k = 0; k < 9; k++) a->slope[k] = lane_set(0);
-    if (isph_soft_last(v, i) >= 0) isph_shift_soft(v, i, a);
-}
-
-TOBI_FN void isph_shift_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,
-                             isph_shift_acc *a, const int shape, const int kind)
-{
-    const lane f = isph_falloff(v, n, m, shape, kind), r = lane_sqrt(n->r2), x[3] = {n->dx, n->dy, n->dz},
-               push = ISPH_PUSH*lane_positive(ISPH_CORE*(float)v->spacing - r)/(r + 1e-20f);
-    lane u[3];
-    (void)i;
-    isph_velocity(v, n, m, kind, u);
-    u[0] = f*(u[0] - a->ux); u[1] = f*(u[1] - a->uy); u[2] = f*(u[2] - a->uz);
-    for (int b = 0; b < 3; b++) {
-        a->core[b] += push*x[b];
-        a->bend[b] += u[b];
-        for (int c = 0; c < 3; c++) a->slope[3*b + c] += u[b]*x[c];
-    }
-    if (kind != ISPH_PLAIN) return;
-    lane c[4];
-    lane_load_float4(v->concentration_gradient, n->j, &c[0], &c[1], &c[2], &c[3]);
-    c[3] = lane_where_equal(n->index, lane_set_int((int32_t)i), lane_set(0), c[3]);
-    for (int b = 0; b < 3; b++) a->normal[b] += c[3]*c[b];
-}
-
-/* Takes that share of the part of x along n out. */
-TOBI_FN void isph_remove_normal(double x[3], const double n[3], double share)
-{
-    const double n2 = n[0]*n[0] + n[1]*n[1] + n[2]*n[2];
-    if (!(n2 > 1e-24)) return;
-    const double along = (x[0]*n[0] + x[1]*n[1] + x[2]*n[2])/n2;
-    for (int a = 0; a < 3; a++) x[a] -= share*along*n[a];
-}
-
-/* |div v| of the gradient g. */
-TOBI_FN void isph_add_divergence(const isph_view *v, int64_t i, const double g[9], double *totals)
-{
-    const isph_tensor *b = &v->inverse[i];
-    if (v->gate[i] > 0) return;
-    const double sum = g[0]*b->xx + g[4]*b->yy + g[8]*b->zz + (g[1] + g[3])*b->xy + (g[5] + g[7])*b->yz +
-                       (g[2] + g[6])*b->zx, size = sum < 0 ? -sum : sum;
-    totals[0] += size;
-    totals[6] = isph_larger(totals[6], size);
-}
-
-TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s, double *totals)
-{
-    const double full = v->trace[i]/(double)v->dimension, d = v->spacing;
-    double x[3], along[3], n[3], g[9], size = 0;
-    for (int k = 0; k < 9; k++) g[k] = -v->slope*lane_sum(s->slope[k]);
-    for (int a = 0; a < 3; a++) {
-        x[a] = -v->shifting*d*d*(&v->concentration_gradient[i].x)[a];
-        n[a] = lane_sum(s->normal[a]);
-    }
-    isph_add_divergence(v, i, g, totals);
-    if (v->gate[i] > 0 && full < ISPH_DROP) x[0] = x[1] = x[2] = 0;
-    else if (v->gate[i] > 0) isph_remove_normal(x, n, 1);
-    else if (v->fades && !(v->last_link && v->last_link[i] >= 0))
-        isph_remove_normal(x, n, 1 - isph_fade(isph_length(n), ISPH_LACK_BEGIN, ISPH_LACK_FULL));
-    for (int a = 0; a < 3; a++) {
-        x[a] = a < v->dimension ? x[a] + lane_sum(s->core[a]) : 0;
-        size += x[a]*x[a];
-    }
-    const double most = ISPH_SHIFT_MAX*d, keep = size > most*most ? most/sqrt(size) : 1;
-    const double part = v->open && full < ISPH_DROP ? 0 : keep;
-    isph_apply(&v->inverse[i], x, along);
-    const double damping = v->shift_damping*part*v->slope*
-                           (along[0]*along[0] + along[1]*along[1] + along[2]*along[2]);
-    for (int a = 0; a < 3; a++) {
-        const double change = g[3*a]*along[0] + g[3*a + 1]*along[1] + g[3*a + 2]*along[2] +
-                              damping*lane_sum(s->bend[a]);
-        (&v->shift_velocity[i].x)[a] = a < v->dimension ? (float)(part*change) : 0;
-        (&v->accel[i].x)[a] = (float)(keep*x[a]/(v->way*v->way));
-    }
-}
-
-TOBI_FN void isph_add_shift_velocity(const isph_view *v, int64_t i, double *totals)
-{
-    (void)totals;
-    for (int a = 0; a < 3; a++) (&v->velocity[i].x)[a] += (&v->shift_velocity[i].x)[a];
 }

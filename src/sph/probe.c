@@ -94,15 +94,13 @@ static void press(void *user, int64_t i, const double r[3])
     membrane *m = user;
     const tobi_smoothing_constants *c = &m->s->smoothing;
     double r2 = r[0]*r[0] + r[1]*r[1] + r[2]*r[2], depth = 0, along = 0;
+    for (int a = 0; a < 3; a++) depth += r[a]*m->normal[a];
+    if (!(r2 < c->h*c->h) || !(depth > 0)) return;
     const tobi_double3 *q = &m->s->particles.position[i];
     const double at[3] = { q->x, q->y, q->z };
     double gravity[3];
     sph_gravity_at(m->s, at, m->s->particles.fluid[i], gravity);
-    for (int a = 0; a < 3; a++) {
-        depth += r[a]*m->normal[a];
-        along += gravity[a]*m->normal[a];
-    }
-    if (!(r2 < c->h*c->h) || !(depth > 0)) return;
+    for (int a = 0; a < 3; a++) along += gravity[a]*m->normal[a];
     if (sph_of(m->s)->mirrors) {
         carry(m, i, r, gravity);
         return;

@@ -1,7 +1,7 @@
 /* Oracles of what steps of second order in time add; a part of test_isph_oracle.c. */
 #pragma once
 
-static void oracle_isph_invariant(check *c, int64_t i, const sums *s)
+static void check_invariant(check *c, int64_t i, const sums *s)
 {
     double g[3][3], trace = 0;
     for (int a = 0; a < 3; a++) isph_apply(&view.inverse[i], &s->slope[3*a], g[a]);

@@ -34,7 +34,7 @@ static int32_t *near_body;
 static isph_mirror *mirror;
 static tobi_boundary_link *links;
 static isph_coupling *couplings;
-static int64_t groups;               /* of images at the body; below, room for them */
+static int64_t groups;               /* of images at the body */
 static const float viscosities[1] = {1e-3f};      /* m2/s */
 static const uint8_t fluids[4000];
 static const double answers[1][6] = {{0.3, -0.2, 0.1, 0.7, -0.4, 0.2}};
@@ -80,7 +80,8 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
                        .surface_row = 1.2, .surface_force = 1.1, .volume_gain = 0.1, .shifting = 0.5,
                        .keep = 0.9, .mean = 3, .carry = 0.4, .gain = 0.7,
                        .volume_sum = 1, .by_count = 1, .lattice_count = dimension == 3 ? 56 : 20,
-                       .xsph = 0.3f, .kinematic = viscosities, .fluid = fluids};
+                       .xsph = 0.3f, .kinematic = viscosities, .fluid = fluids,
+                       .group_count = &groups, .group_room = GROUPS};
     memcpy(view.size, pool.box.size, sizeof view.size);
     memcpy(view.from_fixed, pool.box.from_fixed, sizeof view.from_fixed);
     for (int a = 0; a < dimension; a++)
@@ -98,8 +99,6 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     view.position = shifted = calloc((size_t)count, sizeof *shifted);
     near_body = calloc((size_t)count, sizeof *near_body);
     view.group = calloc(GROUPS, sizeof *view.group);
-    view.group_room = GROUPS;
-    view.group_count = &groups;
     view.first_group = calloc((size_t)count, sizeof *view.first_group);
     view.link = links = calloc((size_t)count, sizeof *links);
     view.coupling = couplings = calloc((size_t)count, sizeof *couplings);
@@ -255,6 +254,7 @@ static double loss_of(const sums *s)
 static double clip(double x) { return fmin(fmax(x, 0), 1); }
 
 #include "kernel/isph_body_oracle.h"
+#include "kernel/isph_time_oracle.h"
 
 static double gate_of(int64_t i, const sums *s)
 {
@@ -286,6 +286,7 @@ static void oracle_isph_geometry(check *c, int64_t i, const sums *s)
             for (int e = 0; e < 3; e++) sum += inverse[a][e]*full[e][k];
             compare(c, sum, (1 - one)*(a == k) + one*full[a][k], 10);
         }
+    check_invariant(c, i, s);
 }
 
 static tobi_float4 before;           /* velocity of the row at hand, before the kernel */
@@ -392,7 +393,6 @@ static void oracle_isph_add_answer(check *c, int64_t i, const sums *s)
 
 #include "kernel/isph_choices_oracle.h"
 #include "kernel/isph_shift_oracle.h"
-#include "kernel/isph_time_oracle.h"
 
 typedef struct entry {
     const char *name;
