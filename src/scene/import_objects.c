@@ -1,6 +1,7 @@
 /* Translating the objects of a Taichi scene: blocks of water, blocks and meshes of bodies, the fish. */
 #define _GNU_SOURCE 1
 #include "scene/import.h"
+#include "scene/import_tank.h"
 #include "tobiuo/scene.h"
 #include "geom/mesh.h"
 #include <ctype.h>
@@ -201,7 +202,7 @@ static char *existing_file(tobi_import *im, const char *directory, const char *p
 
 /* Beside the scene; where the program was started, as the old one did; in the folders above the scene, since
    old scenes lie in data/scenes and name data/models. NULL if it is nowhere. */
-char *tobi_import_find_mesh(tobi_import *im, const char *path)
+static char *find_mesh(tobi_import *im, const char *path)
 {
     char above[PATH_MAX];
     if (path[0] == '/') {
@@ -216,6 +217,14 @@ char *tobi_import_find_mesh(tobi_import *im, const char *path)
         *slash = '\0';
         found = existing_file(im, above, path);
     }
+    return found;
+}
+
+char *tobi_import_find_mesh(tobi_import *im, const char *path)
+{
+    char *plain = tobi_tank_slashes(path), *found = plain ? find_mesh(im, plain) : NULL;
+    im->no_memory |= !plain;
+    free(plain);
     return found;
 }
 
@@ -332,7 +341,9 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
     memcpy(translation, b.translation, sizeof translation);
     if (mesh && b.angle != 0) correct_turn(im, &b, mesh, translation, place);
 
-    const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strrchr(stem, '.');
+    const char *slash = strpbrk(path, "/\\"), *stem = path;
+    for (; slash; slash = strpbrk(stem, "/\\")) stem = slash + 1;
+    const char *dot = strrchr(stem, '.');
     json_t *body = json_object();
     tobi_import_name(im, bodies, body, stem, dot ? (size_t)(dot - stem) : strlen(stem));
     fill_rigid_body(im, body, &b, given, mesh ? mesh : b.file ? b.file : path);

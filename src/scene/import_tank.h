@@ -30,3 +30,5 @@ tobi_status tobi_tank_look(const char *mesh, tobi_tank_shape *shape, tobi_error 
 /* import_tank_find.c: the absolute path of the mesh that `path`, of another machine, names; NULL if it is
    nowhere, and then *places lists where it was looked for (NULL: no memory). Both owned by the caller. */
 char *tobi_tank_find(const char *directory, const char *path, char **places);
+/* The path with slashes for the backslashes of Windows; owned by the caller, NULL without memory. */
+char *tobi_tank_slashes(const char *path);

@@ -64,15 +64,26 @@ static const char *shorten(const char *ending)
     return ending && *ending ? ending : NULL;
 }
 
-char *tobi_tank_find(const char *directory, const char *path, char **list)
+char *tobi_tank_slashes(const char *path)
+{
+    char *plain = strdup(path);
+    for (char *c = plain; c && *c; c++)
+        if (*c == '\\') *c = '/';
+    return plain;
+}
+
+char *tobi_tank_find(const char *directory, const char *given, char **list)
 {
     places p = { .count = 0 };
-    char *found = path[0] == '/' && access(path, F_OK) == 0 ? realpath(path, NULL) : NULL;
     *list = NULL;
+    char *path = tobi_tank_slashes(given);
+    if (!path) return NULL;
+    char *found = path[0] == '/' && access(path, F_OK) == 0 ? realpath(path, NULL) : NULL;
     list_places(&p, directory);
     for (const char *ending = path; ending && !found; ending = shorten(ending))
         for (int k = 0; k < p.count && !found && ending[0] != '/'; k++) found = look_in(p.folder[k], ending);
     if (!found) *list = write_places(&p);
     for (int k = 0; k < p.count; k++) free(p.folder[k]);
+    free(path);
     return found;
 }

@@ -234,7 +234,7 @@ static const char body_text[] =
     "  \"gravitation\": [0, -9.81, 0] %s },\n"
     "  \"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [9, 1, 9] } ],\n"
     "  \"RigidBodies\": [ { \"objectId\": 3,\n"
-    "    \"geometryFile\": \"" TOBI_SOURCE_DIR "/test/meshes/wedge.obj\",\n"
+    "    \"geometryFile\": \"" TOBI_SOURCE_DIR "/test\\\\meshes/wedge.obj\",\n"
     "    \"translation\": [4, 5, 6], \"scale\": [1, 2, 0.5], \"rotationAxis\": [1, 2, -1], %s } ] }";
 
 static const char *make(const char *configuration, const char *body)

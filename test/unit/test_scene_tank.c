@@ -271,6 +271,9 @@ static void where_meshes_are_looked_for(void **state)
     found = tobi_tank_find("case", "/a/../b/elsewhere/tank.obj", &places);
     assert_true(found && strstr(found, "/case/tank.obj"));
     free(found);
+    found = tobi_tank_find("case", "C:\\Users\\x\\tank.obj", &places);       /* of Windows */
+    assert_true(found && strstr(found, "/case/tank.obj"));
+    free(found);
     unlink("case/tank.obj");
     assert_null(tobi_tank_find("case", "/a/../b/elsewhere/tank.obj", &places));
     assert_true(places && strstr(places, "/case, ") && strstr(places, folder));
