@@ -174,7 +174,9 @@ tobi_status tobi_mesh_make_vessel(tobi_mesh *mesh, double thickness, double usua
         return tobi_fail(err, TOBI_NO_MEMORY, "mesh '%s': no memory for walls", name);
     }
     memcpy(out.notes, mesh->notes, sizeof out.notes);
-    tobi_mesh_note(&out, "it has no walls of its own: they lie outside of it, %.4g m thick", t);
+    const int rims = out.triangle_count > 2*mesh->triangle_count;
+    tobi_mesh_note(&out, "it has no walls of its own: they lie outside of it, %.4g m thick%s", t,
+                   rims ? "" : "; it is closed all round");
     const tobi_status status = tobi_mesh_orient_vessel(&out, name, err);
     tobi_mesh_free(mesh);
     *mesh = out;

@@ -55,11 +55,6 @@ static bool has_room(labels *l, float x, float y, float wide, float unit)
     return true;
 }
 
-static void write_tick(double v, double step, char text[32])
-{
-    snprintf(text, 32, "%.4g", fabs(v) < 1e-9*step ? 0 : v);
-}
-
 float view_axis_room(const canvas *c, const tobi_picture *f, int axis)
 {
     const float unit = 0.8f*view_letter_unit(c);
@@ -67,7 +62,7 @@ float view_axis_room(const canvas *c, const tobi_picture *f, int axis)
     float widest = 0;
     char text[32];
     for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
-        write_tick(v, step, text);
+        view_write_tick(v, step, text);
         widest = fmaxf(widest, view_text_width(text, unit));
     }
     return widest + 8*unit;
@@ -86,7 +81,7 @@ static void draw_ticks(canvas *c, const tobi_picture *f, const edge *e, float wa
         const spot s = project(&c->camera, view_point(&c->camera, at));
         const float to[2] = { s.x + 4*unit*way[0], s.y + 4*unit*way[1] };
         view_draw_stroke(c, (float[2]){ s.x, s.y }, to, 1.2f, ink);
-        write_tick(v, step, text);
+        view_write_tick(v, step, text);
         const float wide = view_text_width(text, unit);
         const float beside = way[0] < -0.5f ? -wide - 2*unit : way[0] > 0.5f ? 2*unit : -0.5f*wide;
         const float x = clampf(to[0] + beside, 2, (float)c->width - wide);

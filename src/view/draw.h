@@ -326,6 +326,8 @@ float view_text_width(const char *text, float unit);
 void view_draw_stroke(canvas *c, const float a[2], const float b[2], float pen, vec color);
 void view_draw_text(canvas *c, float x, float y, float unit, const char *text, vec color);
 double view_tick_step(double range);
+/* The number at a tick, with all digits that tell it from the next. */
+void view_write_tick(double v, double step, char text[32]);
 /* Pixels that the numbers at an upright axis take beside the domain. */
 float view_axis_room(const canvas *c, const tobi_picture *f, int axis);
 void view_draw_title(canvas *c, const char *text);

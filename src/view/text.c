@@ -137,9 +137,9 @@ static void lighten_dark(canvas *i, int x0, int y0, int x1, int y1)
         }
 }
 
-static void write_tick(double v, double step, char text[32])
+void view_write_tick(double v, double step, char text[32])
 {
-    snprintf(text, 32, "%.6g", fabs(v) < 1e-9*step ? 0 : v);
+    snprintf(text, 32, "%.10g", fabs(v) < 1e-9*step ? 0 : v);
 }
 
 static float widest_tick(double low, double high, double step, float unit)
@@ -147,7 +147,7 @@ static float widest_tick(double low, double high, double step, float unit)
     char text[32];
     float widest = 0;
     for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
-        write_tick(v, step, text);
+        view_write_tick(v, step, text);
         widest = fmaxf(widest, view_text_width(text, unit));
     }
     return widest;
@@ -178,7 +178,7 @@ void view_draw_color_bar(canvas *i, const tobi_picture *f, double low, double hi
     }
     for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
         char text[32];
-        write_tick(v, step, text);
+        view_write_tick(v, step, text);
         float y = bottom - (float)((v - low)/(high - low))*height;
         view_draw_stroke(i, (float[2]){ x + width, y }, (float[2]){ x + width + 2*unit, y }, 1, ink);
         view_draw_text(i, x + width + 4*unit, y + 3*unit, unit, text, ink);

@@ -41,13 +41,15 @@ static void test_walls(void **state)
     (void)state;
     tobi_mesh closed = make_box(12), open = make_box(10);
     assert_float_equal(make_vessel(&closed, 0, 3), 1.2*1.2*1.2 - 1, 1e-9);
-    assert_non_null(strstr(closed.notes, "it has no walls of its own: they lie outside of it, 0.1 m thick"));
+    assert_non_null(strstr(closed.notes, "it has no walls of its own: they lie outside of it, 0.1 m thick; "
+                           "it is closed all round"));
     assert_null(strstr(closed.notes, "hollow"));
     /* a mesh with walls of its own stays as it is, unless they are asked for */
     assert_float_equal(make_vessel(&closed, 0, 3), 1.2*1.2*1.2 - 1, 1e-9);
     assert_int_equal(closed.triangle_count, 24);
     assert_null(strstr(closed.notes, "hollow"));
     assert_float_equal(make_vessel(&open, 0.05, 3), 1.1*1.1*1.05 - 1, 1e-9);
+    assert_null(strstr(open.notes, "closed all round"));
     assert_float_equal(make_vessel(&open, 0, 3), 1.1*1.1*1.05 - 1, 1e-9);
     tobi_mesh_free(&closed);
     tobi_mesh_free(&open);

@@ -1,5 +1,6 @@
 /* From a moment to a picture: what is hidden, colours of kinds and pieces, which of them a field colours,
    bodies by name, paths. */
+#include "view/draw.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -118,6 +119,19 @@ static void small_times_and_great_speeds(void **state)
         tobi_drawing_free(d);
     }
     looks = before;
+}
+
+/* Far from the origin numbers differ in late digits. */
+static void numbers_have_their_digits(void **state)
+{
+    (void)state;
+    char text[32];
+    view_write_tick(5000.5, 0.5, text);
+    assert_string_equal(text, "5000.5");
+    view_write_tick(0.1 + 0.1 + 0.1, 0.1, text);
+    assert_string_equal(text, "0.3");
+    view_write_tick(-1e-17, 0.2, text);
+    assert_string_equal(text, "0");
 }
 
 /* Long numbers at the upright axis of a flat scene find room in the picture. */
@@ -298,7 +312,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(materials_have_looks), cmocka_unit_test(small_times_and_great_speeds),
-        cmocka_unit_test(numbers_at_axes_are_whole),
+        cmocka_unit_test(numbers_have_their_digits), cmocka_unit_test(numbers_at_axes_are_whole),
         cmocka_unit_test(solids_beside_liquids_have_colors), cmocka_unit_test(bodies_are_found_by_name),
         cmocka_unit_test(fields_of_one_kind), cmocka_unit_test(isolines_of_one_kind),
         cmocka_unit_test(tracks_are_read), cmocka_unit_test(wrong_calls_are_refused)
