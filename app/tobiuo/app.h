@@ -202,7 +202,9 @@ char *frame_path(const char *dir, const char *view, int64_t number);
 /* draw.c: draws from the results of the run in dir, with values of its scene changed, the pictures that
    folder/frames lacks, from the first missing one on. Returns the exit code. */
 int draw_missing(const char *dir, const char *view, const overrides *set, const char *folder);
-/* sheet.c: a dozen of them in one PNG. Returns the exit code. */
+/* sheet.c: whether the PNG has an alpha channel. */
+int is_transparent(const char *path);
+/* A dozen of them in one PNG. Returns the exit code. */
 int make_sheet(const char *dir, const char *view, const char *out);
 
 /* progress.c */

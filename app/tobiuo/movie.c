@@ -164,9 +164,35 @@ static char *name_pictures(const char *dir, const char *view)
     return path;
 }
 
+/* Transparent pictures on white, in a movie that has no alpha: of the negative black is the paper. */
+#define ON_WHITE "format=gbrap,negate,premultiply=inplace=1,negate,"
+
+static int has_pictures_with_alpha(const char *dir, const char *view)
+{
+    char *path = frame_path(dir, view, 0);
+    const int alpha = path && is_transparent(path);
+    free(path);
+    return alpha;
+}
+
+/* The options of a kind behind argument n; the next n. *filter is the caller's. */
+static int add_options(const struct kind *kind, int alpha, char **argument, int n, char **filter)
+{
+    for (int k = 0; kind->option[k]; k++) {
+        argument[n++] = (char *)kind->option[k];
+        if (!alpha || k == 0 || strcmp(kind->option[k - 1], "-vf") != 0) continue;
+        if (asprintf(filter, ON_WHITE "%s", kind->option[k]) < 0) *filter = NULL;
+        else argument[n - 1] = *filter;
+    }
+    return n;
+}
+
 static int encode(const char *dir, const char *view, const char *part, const struct kind *kind, double rate)
 {
     enum { ARGUMENTS = 32 };
+    char *filter = NULL;
+    int opaque = 0;
+    for (int k = 0; kind->option[k]; k++) opaque |= strcmp(kind->option[k], "yuv420p") == 0;
     char *argument[ARGUMENTS], speed[32], most[32], *pictures = name_pictures(dir, view), *file = NULL;
     int n = 0;
     if (!pictures || asprintf(&file, "file:%s", part) < 0) {
@@ -179,12 +205,13 @@ static int encode(const char *dir, const char *view, const char *part, const str
                                   pictures };
     const char *const last[] = { "-r", most, "-f", kind->format, file };
     for (size_t k = 0; k < sizeof first/sizeof *first; k++) argument[n++] = (char *)first[k];
-    for (int k = 0; kind->option[k]; k++) argument[n++] = (char *)kind->option[k];
+    n = add_options(kind, opaque && has_pictures_with_alpha(dir, view), argument, n, &filter);
     for (size_t k = 0; k < sizeof last/sizeof *last; k++) argument[n++] = (char *)last[k];
     argument[n] = NULL;
     char said[TOOL_SAYS];
     int code = run_tool(NULL, argument, "makes the movie", "ffmpeg", 0, said);
     if (code < 0) code = complain("ffmpeg failed on %s: %s", pictures, said);
+    free(filter);
     free(pictures);
     free(file);
     return code;

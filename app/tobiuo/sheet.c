@@ -17,15 +17,17 @@ typedef struct sheet {
     png_bytep pixels;                   /* owned                  */
 } sheet;
 
-/* The picture of an output as RGB. Returns 0, or EXIT_ERROR after a complaint; *pixels is the caller's. */
+/* The picture of an output as RGB, a transparent one on white. Returns 0, or EXIT_ERROR after a complaint;
+   *pixels is the caller's. */
 static int read_picture(const char *path, png_image *image, png_bytep *pixels)
 {
+    static const png_color white = { 255, 255, 255 };
     *image = (png_image){ .version = PNG_IMAGE_VERSION };
     *pixels = NULL;
     if (png_image_begin_read_from_file(image, path)) {
         image->format = PNG_FORMAT_RGB;
         *pixels = malloc(PNG_IMAGE_SIZE(*image) + 1);
-        if (*pixels && png_image_finish_read(image, NULL, *pixels, 0, NULL)) return 0;
+        if (*pixels && png_image_finish_read(image, &white, *pixels, 0, NULL)) return 0;
     }
     const int code = complain("cannot read %s: %s", path, *image->message ? image->message : "out of "
         "memory");
@@ -86,6 +88,14 @@ static int draw_cell(sheet *s, const char *dir, const char *view, int cell)
     free(pixels);
     free(path);
     return code;
+}
+
+int is_transparent(const char *path)
+{
+    png_image image = { .version = PNG_IMAGE_VERSION };
+    const int alpha = png_image_begin_read_from_file(&image, path) && image.format & PNG_FORMAT_FLAG_ALPHA;
+    png_image_free(&image);
+    return alpha;
 }
 
 int make_sheet(const char *dir, const char *view, const char *out)

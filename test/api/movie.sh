@@ -87,6 +87,14 @@ for kind in webm gif; do
 done
 expect 0 "" movie "100%d run" --out film.webp
 check "film.webp has 11 pictures" test "$(grep -aoc WEBP film.webp) $(grep -ao ANMF film.webp | wc -l)" = "1 11"
+# Transparent pictures, where a file knows no transparency, stand on white.
+corner() { ffmpeg -loglevel error -i "$1" -frames:v 1 -vf crop=2:2:2:h-4 -f rawvideo -pix_fmt gray - | od -An -tu1; }
+is_white() { for byte in $(corner "$1"); do [ "$byte" -gt 240 ] || return 1; done; }
+expect 0 "" run drop.json --out clear --quiet --frames --set output.picture.transparent=true
+for file in clear.png clear.mp4; do
+    expect 0 "" movie clear --out $file
+    check "$file is on white" is_white $file
+done
 expect 0 "" run drop.json --out again --quiet --movie again.mp4
 check "run --movie" is again.mp4 11 0.22
 expect 2 "--slow needs --movie" run drop.json --out no --slow 2
