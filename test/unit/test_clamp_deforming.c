@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include "calls.h"
 #include "mpm/clamp.h"
@@ -45,12 +46,16 @@ static tobi_world *make_world(const setup *s)
     return world;
 }
 
+static pthread_t asking;
+static int asked_elsewhere;              /* 1: by another thread than that which steps the world */
+
 /* A wave along x, of its full height from the start, so that the bar begins bent; it sets off within
    0.1 s. */
 static tobi_status wave(void *user, double t, int64_t n, const double (*rest)[3], double (*out)[3],
                         tobi_error *err)
 {
     (void)user, (void)err;
+    if (!pthread_equal(asking, pthread_self())) asked_elsewhere = 1;
     const double phase = t < 0.1 ? 10*t*t/0.1 : 20*t - 1;
     for (int64_t i = 0; i < n; i++) {
         memcpy(out[i], rest[i], sizeof out[i]);
@@ -175,9 +180,12 @@ static void a_rigid_motion_is_the_same(void **state)
     for (int k = 0; k < 2; k++) free(at[k]);
 }
 
+/* Also: a script has one channel, so that one thread asks. */
 static void the_same_bits(void **state)
 {
     (void)state;
+    asking = pthread_self();
+    asked_elsewhere = 0;
     setup s = make_setup(2, wave);
     tobi_world *world[3];
     for (int n = 0; n < 3; n++) {
@@ -186,6 +194,7 @@ static void the_same_bits(void **state)
     }
     solid_check_bits(world[0], world[1], world[2]);
     for (int n = 0; n < 3; n++) tobi_world_destroy(world[n]);
+    assert_false(asked_elsewhere);
 }
 
 /* Nothing comes to lie below the fold, whence the tile sticks out of the bar. */
