@@ -1,5 +1,5 @@
-/* Names of files for bodies and lines: their own with odd characters as '_', and a number if taken. Drawback:
-   a body that is renamed has other files. */
+/* Names of files for bodies and lines: their own, of any script, with blanks and signs as "_", and a number
+   if taken. Drawback: a body that is renamed has other files. */
 #include "record/record.h"
 #include "world/world.h"
 #include <ctype.h>
@@ -29,11 +29,17 @@ static bool is_free(const names *n, const char *name)
     return !is_taken(n, name) && !is_taken(n, tractions);
 }
 
+static bool stays(char c)
+{
+    const unsigned char code = (unsigned char)c;
+    return code >= 0x80 || isalnum(code) || strchr("-_", c);
+}
+
 static void make_name(const names *n, const char *own, const char *otherwise, tobi_record_name out)
 {
-    char stem[64] = "", name[80];
+    char stem[72] = "", name[88];
     for (size_t k = 0; own[k] && k + 1 < sizeof stem; k++)
-        stem[k] = isalnum((unsigned char)own[k]) || strchr("-_", own[k]) ? own[k] : '_';
+        stem[k] = stays(own[k]) ? own[k] : '_';
     if (!*stem) snprintf(stem, sizeof stem, "%s", otherwise);
     snprintf(name, sizeof name, "%s", stem);
     for (int i = 2; !is_free(n, name); i++) snprintf(name, sizeof name, "%s_%d", stem, i);

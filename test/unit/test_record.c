@@ -151,6 +151,18 @@ static void test_body_names_become_file_names(void **state)
     tobi_world_destroy(world);
 }
 
+static void test_names_of_any_script_stay(void **state)
+{
+    (void)state;
+    const char *const names[] = { "船 1", "舟 1" };
+    tobi_output_def output = make_output();
+    tobi_world *world = make_world(2, names);
+    tobi_run *run = create(world, &output, at("scripts"), 0);
+    assert_true(exists(at("scripts/船_1.pvd")) && exists(at("scripts/舟_1.pvd")));
+    tobi_run_free(run);
+    tobi_world_destroy(world);
+}
+
 /* Particles of bodies have their own fields only, and one list has every file under the times of all. */
 static void test_bodies_and_the_list_of_all(void **state)
 {
@@ -316,6 +328,7 @@ int main(void)
         cmocka_unit_test(test_an_end_without_output_gets_it),
         cmocka_unit_test(test_long_intervals_do_not_end_a_run),
         cmocka_unit_test(test_body_names_become_file_names),
+        cmocka_unit_test(test_names_of_any_script_stay),
         cmocka_unit_test(test_bodies_and_the_list_of_all),
         cmocka_unit_test(test_going_on_equals_not_stopping),
         cmocka_unit_test(test_checkpoints),

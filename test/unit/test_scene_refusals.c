@@ -115,6 +115,34 @@ static void keys_of_errors(void **state)
     assert_int_equal(tobi_at_key(NULL, TOBI_IO, "none"), TOBI_IO);
 }
 
+/* What a world keeps of a name is the whole of it: lines find the body. */
+static void names_have_room(void **state)
+{
+    (void)state;
+    static const char rest[] =
+        "\"bodies\": [ { \"name\": \"%1$.*2$s\", \"sphere\": { \"centre\": [0.5, 0.5, 0.5],\n"
+        "\"radius\": 0.2 }, \"density\": 500, \"dynamics\": \"free\" } ],\n"
+        "\"lines\": [ { \"name\": \"rope\", \"body\": \"%1$.*2$s\", \"point\": [0.5, 0.5, 0.7],\n"
+        "\"to\": [0.5, 0.5, 0.9], \"stiffness\": 10 } ]";
+    char name[65], text[1000];
+    memset(name, 'n', 64);
+    tobi_world *w;
+    tobi_scene *scene;
+    tobi_error err = { 0 };
+    snprintf(text, sizeof text, rest, name, 63);
+    scene = parse(text);
+    if (tobi_scene_build(scene, &w, &err) != TOBI_OK) fail_msg("%s", err.text);
+    tobi_world_destroy(w);
+    tobi_scene_free(scene);
+    static const char fluid[] =
+        "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 0.1, \"end_time\": 1,\n"
+        "\"fluids\": [ { \"name\": \"%.64s\", \"fill\": [] } ] }";
+    snprintf(text, sizeof text, fluid, name);
+    assert_int_not_equal(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, &err), TOBI_OK);
+    if (!strstr(err.text, "fluids[0].name: is not usable as a name: 1 to 63 letters"))
+        fail_msg("%s", err.text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -122,6 +150,7 @@ int main(void)
         cmocka_unit_test(the_start_names_keys),
         cmocka_unit_test(rounding_is_no_breach),
         cmocka_unit_test(keys_of_errors),
+        cmocka_unit_test(names_have_room),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
