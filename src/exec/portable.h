@@ -30,6 +30,16 @@ TOBI_FN int tobi_lowest_bit(uint64_t x)
 #endif
 }
 
+/* Adds to a count that all items share, and returns what it was. In which order items come is open. */
+TOBI_FN int64_t tobi_fetch_add(int64_t *count, int64_t more)
+{
+#if defined(__CUDA_ARCH__)
+    return (int64_t)atomicAdd((unsigned long long *)count, (unsigned long long)more);
+#else
+    return __atomic_fetch_add(count, more, __ATOMIC_RELAXED);
+#endif
+}
+
 typedef struct tobi_float4 { float x, y, z, w; } tobi_float4;
 /* Fixed-point position over the domain (see docs/decisions/0002) and one float for the pass. */
 typedef struct tobi_record { int32_t x, y, z; float w; } tobi_record;

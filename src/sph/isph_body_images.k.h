@@ -391,7 +391,7 @@ TOBI_FN void isph_list_images(const isph_view *v, int64_t i, double *totals)
     isph_walk_begin(&w, v, i);
     while (isph_walk_fill(&w)) {
         const int places = isph_places(&w.group);
-        const int64_t g = __atomic_fetch_add(v->group_count, places, __ATOMIC_RELAXED);
+        const int64_t g = tobi_fetch_add(v->group_count, places);
         if (g + places > v->group_room) continue;
         isph_put_group(v, &w, g);
         *to = g;
