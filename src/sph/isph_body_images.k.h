@@ -19,7 +19,7 @@ enum {
 typedef struct isph_plane {
     int32_t mirror[2];               /* of i and of j                                               */
     double normal[3], velocity[3], velocity_change[3];
-    double size;                     /* 1: square of the normal before it is closed                 */
+    double size;                     /* 1: square of the normal before its length is one            */
     double sum[3];                   /* m, of the offsets of both particles                         */
     double weight;
 } isph_plane;
@@ -72,7 +72,7 @@ TOBI_FN int isph_find_plane(const isph_view *v, int32_t own, int32_t other, isph
     return p->size > 1 && p->weight > 0;
 }
 
-TOBI_FN void isph_plane_close(isph_plane *p)
+TOBI_FN void isph_normalise_plane(isph_plane *p)
 {
     for (int c = 0; c < 3; c++) p->normal[c] /= sqrt(p->size);
 }
@@ -115,7 +115,7 @@ TOBI_FN void isph_walk_list_images(isph_walk *w)
     w->images = w->at = w->reflection = 0;
     if (isph_walk_misses(w)) return;
     for (int p = 0; p < w->planes; p++) {
-        isph_plane_close(&w->plane[p]);
+        isph_normalise_plane(&w->plane[p]);
         f[w->images][0] = p;
         f[w->images][1] = f[w->images][2] = -1;
         w->images++;
@@ -408,33 +408,43 @@ TOBI_FN int isph_has_corners(const isph_view *v, int64_t i)
     return any;
 }
 
-/* The same images, when bodies have other velocities: those in corners are made anew. */
-TOBI_FN void isph_refresh_images(const isph_view *v, int64_t i, double *totals)
+/* The velocities of a group without corners. */
+TOBI_FN void isph_refresh_group(const isph_view *v, int64_t group)
+{
+    isph_image_group *g = &v->group[group].images;
+    for (int k = 0; k < TOBI_LANES && g->mirror[0][k] >= 0; k++) {
+        int sided[3];
+        double normal[3], speed[2];
+        isph_plane p;
+        for (int a = 0; a < 3; a++) sided[a] = g->sided && v->group[group + 1].rest.sign[a][k] < 0;
+        isph_find_plane(v, g->mirror[0][k], g->mirror[1][k], &p);
+        isph_normalise_plane(&p);
+        isph_plane_along(&p, sided, normal, speed);
+        g->normal_velocity[k] = (float)speed[0];
+        g->velocity_change[k] = (float)speed[1];
+    }
+}
+
+/* The same images in the same groups, made anew. */
+TOBI_FN void isph_make_images_anew(const isph_view *v, int64_t i)
 {
     isph_walk w;
-    const int anew = isph_has_corners(v, i);
-    (void)totals;
-    if (anew) isph_walk_begin(&w, v, i);
-    for (int64_t g = isph_first_group(v, i), next; g >= 0; g = next) {
-        isph_image_group *q = &v->group[g].images;
-        next = q->next;
-        if (anew && isph_walk_fill(&w)) {
-            w.group.next = next;
-            isph_put_group(v, &w, g);
-        }
-        for (int k = 0; k < TOBI_LANES && !anew; k++) {
-            int sided[3];
-            double normal[3], speed[2];
-            isph_plane p;
-            if (q->mirror[0][k] < 0) break;
-            for (int a = 0; a < 3; a++) sided[a] = q->sided && v->group[g + 1].rest.sign[a][k] < 0;
-            isph_find_plane(v, q->mirror[0][k], q->mirror[1][k], &p);
-            isph_plane_close(&p);
-            isph_plane_along(&p, sided, normal, speed);
-            q->normal_velocity[k] = (float)speed[0];
-            q->velocity_change[k] = (float)speed[1];
-        }
+    isph_walk_begin(&w, v, i);
+    for (int64_t g = isph_first_group(v, i); g >= 0 && isph_walk_fill(&w); g = w.group.next) {
+        w.group.next = v->group[g].images.next;
+        isph_put_group(v, &w, g);
     }
+}
+
+/* When bodies have other velocities. What is in corners has those of several planes. */
+TOBI_FN void isph_refresh_images(const isph_view *v, int64_t i, double *totals)
+{
+    (void)totals;
+    if (isph_has_corners(v, i)) {
+        isph_make_images_anew(v, i);
+        return;
+    }
+    for (int64_t g = isph_first_group(v, i); g >= 0; g = v->group[g].images.next) isph_refresh_group(v, g);
 }
 
 /* A group of particle i, whose list begins at first. */
