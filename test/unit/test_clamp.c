@@ -10,14 +10,12 @@
 #include "calls.h"
 #include "mpm/clamp.h"
 #include "mpm/particle_fields.h"
-#include "solid_rig.h"
+#include "clamp_rig.h"
 #include "world/world.h"
 
 static const double PI = 3.14159265358979;
 
 /* A block of 0.1 m and 1 kg that stands on a plate of 0.2 m, half of it inside; no gravity. */
-typedef struct setup { solid_setup solid; tobi_body_def body; } setup;
-
 static setup make_setup(void)
 {
     setup s = { solid_default(3, 0.0125, 0.1), tobi_default_body_def() };
@@ -34,14 +32,6 @@ static setup make_setup(void)
     s.solid.solid.youngs_modulus = 1e5;
     s.solid.solid.clamped_to = s.body.name = "plate";
     return s;
-}
-
-static tobi_world *make_world(const setup *s)
-{
-    tobi_world *world = solid_world(&s->solid);
-    OK(tobi_world_add_body(world, &s->body, &err));
-    OK(tobi_world_start(world, &err));
-    return world;
 }
 
 /* Largest distance of held particles from their places, m; *held: how many there are. */

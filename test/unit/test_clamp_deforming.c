@@ -11,14 +11,12 @@
 #include "calls.h"
 #include "mpm/clamp.h"
 #include "mpm/particle_fields.h"
-#include "solid_rig.h"
+#include "clamp_rig.h"
 #include "world/world.h"
 
 static const double SPACING = 0.0125;
 
 /* A tile of rubber of 0.2 m x 0.05 m, half of it in a bar that bends; no gravity. */
-typedef struct setup { solid_setup solid; tobi_body_def body; } setup;
-
 static setup make_setup(int dimension, tobi_motion_fn motion)
 {
     setup s = { solid_default(dimension, SPACING, 0.1), tobi_default_body_def() };
@@ -36,14 +34,6 @@ static setup make_setup(int dimension, tobi_motion_fn motion)
     s.solid.solid.clamped_to = s.body.name = "bar";
     s.body.motion = motion;
     return s;
-}
-
-static tobi_world *make_world(const setup *s)
-{
-    tobi_world *world = solid_world(&s->solid);
-    OK(tobi_world_add_body(world, &s->body, &err));
-    OK(tobi_world_start(world, &err));
-    return world;
 }
 
 static pthread_t asking;
