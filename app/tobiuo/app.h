@@ -59,6 +59,8 @@ int terminal_columns(FILE *file);
 /* Names of scene files and folders with a scene, sorted. */
 char **list_scenes(const char *folder, size_t *count);
 void free_names(char **names, size_t count);
+/* A new file, whole or not at all; 0, or EXIT_ERROR after a complaint. */
+int write_new(const char *path, const char *text, size_t size);
 /* A path seen from the current folder, if it lies below. Owned by the caller. */
 char *relative_path(const char *path);
 /* The scene that a path leading nowhere may mean; NULL if none is near. Owned by the caller. */

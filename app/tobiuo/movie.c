@@ -201,8 +201,9 @@ static int encode(const char *dir, const char *view, const char *part, const str
     }
     snprintf(speed, sizeof speed, "%.9g", rate);
     snprintf(most, sizeof most, "%.9g", fmin(rate, FASTEST));
-    const char *const first[] = { "ffmpeg", "-y", "-nostdin", "-loglevel", "error", "-framerate", speed, "-i",
-                                  pictures };
+    /* -xerror: without it a movie whose end had no room on the disk is a success. */
+    const char *const first[] = { "ffmpeg", "-y", "-nostdin", "-xerror", "-loglevel", "error", "-framerate",
+                                  speed, "-i", pictures };
     const char *const last[] = { "-r", most, "-f", kind->format, file };
     for (size_t k = 0; k < sizeof first/sizeof *first; k++) argument[n++] = (char *)first[k];
     n = add_options(kind, opaque && has_pictures_with_alpha(dir, view), argument, n, &filter);

@@ -269,17 +269,14 @@ static int prove(const family_choice *c, const char *text, size_t size)
     return code;
 }
 
-static int write_text(const char *dir, const char *text, size_t size)
+static int write_folder(const char *dir, const char *text, size_t size)
 {
     char *path = NULL;
     if (asprintf(&path, "%s/scene.json", dir) < 0) return complain("out of memory");
     int code = mkdir(dir, 0777) == 0 ? 0
              : errno == EEXIST ? complain("%s is there already; name another folder", dir)
                                : complain("%s: %s", dir, strerror(errno));
-    FILE *out = code ? NULL : fopen(path, "wx");
-    if (!code && (!out || fwrite(text, 1, size, out) != size))
-        code = complain("%s: %s", path, strerror(errno));
-    if (out && fclose(out) != 0 && !code) code = complain("%s: %s", path, strerror(errno));
+    if (!code && (code = write_new(path, text, size)) != 0) rmdir(dir);
     free(path);
     return code;
 }
@@ -292,7 +289,7 @@ static int write_scene(const family_choice *c, const char *dir)
     if (!out) return complain("out of memory");
     c->family->write(c, out);
     int code = fclose(out) == 0 ? prove(c, text, size) : complain("out of memory");
-    if (!code) code = write_text(dir, text, size);
+    if (!code) code = write_folder(dir, text, size);
     free(text);
     return code;
 }

@@ -31,19 +31,22 @@ static char *read_text(const char *path, size_t *size)
     return text;
 }
 
-static int write_text(const char *path, const char *text, size_t size)
+int write_new(const char *path, const char *text, size_t size)
 {
     FILE *file = fopen(path, "wbx");
-    int good = file && fwrite(text, 1, size, file) == size;
-    if (file && fclose(file) != 0) good = 0;
-    return good ? 0 : complain("%s: %s", path, strerror(errno));
+    if (!file) return complain("%s: %s", path, strerror(errno));
+    int failed = fwrite(text, 1, size, file) == size ? 0 : errno;
+    if (fclose(file) != 0 && !failed) failed = errno;
+    if (!failed) return 0;
+    unlink(path);
+    return complain("%s: %s", path, strerror(failed));
 }
 
 static int copy_file(const char *from, const char *to)
 {
     size_t size;
     char *text = read_text(from, &size);
-    int code = !text ? EXIT_ERROR : access(to, F_OK) == 0 ? 0 : write_text(to, text, size);
+    int code = !text ? EXIT_ERROR : access(to, F_OK) == 0 ? 0 : write_new(to, text, size);
     free(text);
     return code;
 }
@@ -150,7 +153,7 @@ static int copy_scene(const char *from, const char *to)
     }
     if (out) fclose(out);
     path = join(to, "scene.json");
-    if (!code) code = write_text(path, copy, room);
+    if (!code) code = write_new(path, copy, room);
     free(path);
     free(copy);
     free(text);

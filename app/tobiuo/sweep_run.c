@@ -182,30 +182,39 @@ int sweep_run(const sweep *s)
 
 /* --- SLURM --------------------------------------------------------------------------------- */
 
-/* 'text', safe for a shell. */
+/* A text between the quotes of a shell. */
+static void put_safe(FILE *out, const char *text)
+{
+    for (; *text; text++) fputs(*text == '\'' ? "'\\''" : (char[]){ *text, '\0' }, out);
+}
+
 static void put_quoted(FILE *out, const char *text)
 {
     fputs(" '", out);
-    for (; *text; text++) fputs(*text == '\'' ? "'\\''" : (char[]){ *text, '\0' }, out);
+    put_safe(out, text);
+    fputc('\'', out);
+}
+
+static void put_axis(FILE *out, const sweep_axis *a)
+{
+    fputs(" --set '", out);
+    put_safe(out, a->path);
+    for (int v = 0; v < a->count; v++) {
+        fputc(v ? ',' : '=', out);
+        put_safe(out, a->value[v]);
+    }
     fputc('\'', out);
 }
 
 static void put_command(const sweep *s, FILE *out)
 {
-    char exe[4096], set[4096];
+    char exe[4096];
     const ssize_t length = readlink("/proc/self/exe", exe, sizeof exe - 1);
     exe[length > 0 ? length : 0] = '\0';
     put_quoted(out, length > 0 ? exe : "tobiuo");
     fputs(" sweep", out);
     put_quoted(out, s->scene);
-    for (int k = 0; k < s->axis_count; k++) {
-        int used = snprintf(set, sizeof set, "%s=", s->axes[k].path);
-        for (int v = 0; v < s->axes[k].count && used < (int)sizeof set; v++)
-            used += snprintf(set + used, sizeof set - (size_t)used, "%s%s", v ? "," : "",
-                             s->axes[k].value[v]);
-        fputs(" --set", out);
-        put_quoted(out, set);
-    }
+    for (int k = 0; k < s->axis_count; k++) put_axis(out, &s->axes[k]);
     if (s->until) fprintf(out, " --until %s", s->until);
     fputs(" --out", out);
     put_quoted(out, s->dir);

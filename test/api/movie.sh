@@ -111,5 +111,13 @@ rm views.mp4
 expect 1 "views_p.mp4 exists; --force replaces it" run drop.json --out no --movie views.mp4 --set "$views"
 expect 1 "ffmpeg failed" movie again --out /proc/film.mp4
 check "nothing is left of a movie that failed" test ! -e /proc/film.mp4.part
+# A disk that is full at the end of a movie, played by a limit on the size of files.
+cp again.mp4 kept.mp4
+limit=$((($(stat -c %s again.mp4) - 1)/1024)) got=0
+(trap '' XFSZ; ulimit -f $limit; exec "$program" movie again --out again.mp4 --force) > out.txt 2> err.txt || got=$?
+check "a movie without room: exit code 1 (was $got)" test $got = 1
+check "a movie without room: said so" grep -q "ffmpeg failed on .*File too large" err.txt
+check "a movie without room: the one before stays" cmp again.mp4 kept.mp4
+check "a movie without room: nothing is left" test ! -e again.mp4.part
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

@@ -61,6 +61,12 @@ for family in $families; do
     check "$family left no folder" test ! -e absurd
 done
 expect 1 "no scene is written; given: --spacing 0.0001" new wave_tank --spacing 1e-4
+(trap '' XFSZ; ulimit -f 1; exec "$program" new lobovsky none) > out.txt 2> err.txt
+check "a scene without room: said so" grep -q "none/scene.json: File too large" err.txt
+check "a scene without room: nothing is left" test ! -e none
+(trap '' XFSZ; ulimit -f 1; exec "$program" new raft none) > out.txt 2> err.txt
+check "a copy without room: said so" grep -q "none/.*: File too large" err.txt
+check "a copy without room: no scene is left" test ! -e none/scene.json
 expect 2 "--until: '1e9' is not a number from 1e-06 to 100000 s" new hose --until 1e9
 
 # --- sweeps -----------------------------------------------------------------------------------------
@@ -86,6 +92,10 @@ check "an array job" grep -q "^#SBATCH --array=0-3" s/sweep.slurm
 check "that is a shell script" sh -n s/sweep.slurm
 check "and runs one of them" env SLURM_ARRAY_TASK_ID=1 sh s/sweep.slurm
 check "only that one" test -s s/spacing=0.02_method=wcsph/summary.json -a ! -e s/spacing=0.02_method=dfsph
+many=$(seq -s, 0.01 0.00001 0.02)
+expect 0 "" sweep $flat --set time_step_max=$many --out many --slurm
+check "an array job of many runs" grep -q "^#SBATCH --array=0-1000" many/sweep.slurm
+check "knows all of them" grep -qF "'time_step_max=$many'" many/sweep.slurm
 kept=$(stat -c %Y.%i s/spacing=0.02_method=wcsph/summary.json)
 "$program" "${sweep[@]}" --table > out.txt 2> err.txt
 check "the table of what there is" test "$(grep -c 'not run' s/sweep.csv)" = 3
