@@ -569,6 +569,7 @@ const tobi_method tobi_dfsph = {
     .doc = "Divergence-free SPH for water: incompressible, free surface, walls and moving bodies.",
     .density_ratio = 10,
     .mixes_with_bodies = 1,
+    .mixes_with_solids = 1,
     .params = &tobi_dfsph_table,
     .fields = &sph_field_list,
     .outputs = sph_outputs,

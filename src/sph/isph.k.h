@@ -339,10 +339,10 @@ TOBI_FN void isph_rows_pair(const isph_view *v, int64_t i, const tobi_neighbors 
     c->divergence += f*((u[0] - c->ux)*x + (u[1] - c->uy)*y + (u[2] - c->uz)*z);
     lane rest = c->px*n->dx + c->py*n->dy + c->pz*n->dz, image = isph_pressure_difference(v, m, kind);
     if (v->phase) {
-        const isph_pair_phase phase = isph_see_phase(v, i, n);
+        const isph_pair_phase phase = isph_see_phase(v, i, n, kind);
         c->whole += a;
         a = a/phase.face;
-        image = image*phase.other + phase.jump;
+        image = image*phase.image + phase.jump;
         rest = rest*phase.face;
     }
     c->difference += a*(image + rest);
@@ -465,8 +465,8 @@ TOBI_FN void isph_projection_pair(const isph_view *v, int64_t i, const tobi_neig
     const lane f = isph_falloff(v, n, m, shape, kind), image = isph_pressure_difference(v, m, kind);
     lane q = f*(n->w + image - a->p);
     if (v->phase) {
-        const isph_pair_phase phase = isph_see_phase(v, i, n);
-        q = f*(n->w + image*phase.other + phase.jump - a->p)/phase.face;
+        const isph_pair_phase phase = isph_see_phase(v, i, n, kind);
+        q = f*(n->w + image*phase.image + phase.jump - a->p)/phase.face;
     }
     a->x += q*n->dx; a->y += q*n->dy; a->z += q*n->dz;
 }

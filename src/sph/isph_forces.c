@@ -20,6 +20,7 @@ typedef struct body_points {
     isph_point *point;               /* of the body                                                 */
     int holds;                       /* 1: a body holds a solid, and points know their share `held` */
     double scale;                    /* m3, on W                                                    */
+    double share[TOBI_MAX_FLUIDS];   /* 1: density of each fluid over that of the first             */
 } body_points;
 
 static const tobi_body *body_of(const body_points *q) { return &q->s->sim->bodies[q->body]; }
@@ -30,6 +31,7 @@ typedef struct seen_particles {
     int count;
     double at[MOST][3];              /* m, from the point                                           */
     double square[MOST], height[MOST], weight[MOST];
+    double share[MOST];              /* 1: density over that of the first fluid                     */
 } seen_particles;
 
 /* Lists particles, without a branch, until there is no room; returns the first that was not looked at. */
@@ -51,6 +53,7 @@ static int64_t list_particles(const body_points *q, int64_t point, int64_t i, in
         const double square = vec3_dot(x, x), height = vec3_dot(x, normal);
         l->square[count] = square;
         l->height[count] = height;
+        l->share[count] = q->share[q->v->fluid[i]];
         count += (height > 0) & (square < h2);
     }
     l->count = count;
@@ -65,10 +68,10 @@ static void add_particles(const body_points *q, const double pull[3], seen_parti
     const isph_view *v = q->v;
     tobi_smoothing_weigh(c->shape, c->dimension, c->h, l->count, l->square, l->weight);
     for (int i = 0; i < l->count; i++) {
-        const double w = q->scale*l->weight[i];
+        const double w = q->scale*l->weight[i], heavy = w*l->share[i];
         sum->weight += w;
-        sum->distance += w*l->height[i];
-        for (int a = 0; a < v->dimension; a++) sum->hydrostatic -= w*v->density*pull[a]*l->at[i][a];
+        sum->distance += heavy*l->height[i];
+        for (int a = 0; a < v->dimension; a++) sum->hydrostatic -= heavy*v->density*pull[a]*l->at[i][a];
     }
     l->count = 0;
 }
@@ -279,6 +282,7 @@ tobi_status isph_forces_find_coupling(isph_solver *m, tobi_system *s, tobi_error
     TOBI_TRY(reserve(m, n, bodies, err));
     body_points q = { .s = s, .v = &m->view, .holds = find_held(m, s),
                       .scale = c->volume*c->weight_correction };
+    for (int f = 0; f < s->fluid_count; f++) q.share[f] = s->fluid[f].density/m->view.density;
     for (q.body = 0; q.body < bodies; q.body++) {
         double t[TOBI_TOTALS] = { 0 };
         q.point = m->point + n->bins[q.body].item;

@@ -6,7 +6,8 @@
 #include "sph/kernels.h"
 
 /* A point of a body's surface: sum of the weights of the particles before it (INFINITY: dry), and of those
-   times the hydrostatic pressure from particle to point, Pa, and times the distance from the surface, m. */
+   times the hydrostatic pressure from particle to point, Pa, and times the distance from the surface, m, and
+   the density over that of the first fluid. */
 typedef struct isph_point {
     double weight, hydrostatic, distance;
     uint32_t held;                   /* share of the half space before it with a solid that the body holds, in

@@ -40,7 +40,7 @@ static void carry(look *l, int64_t i, const double r[3], double w, double depth)
     for (int a = 0; a < l->s->box.dimension; a++) p -= rho*l->gravity[a]*r[a];
     l->pressure += w*p;
     l->weight += w;
-    l->away += w*depth;
+    l->away += w*(rho/l->s->fluid[0].density)*depth;
 }
 
 /* The reaction of the drag that the particle feels from here, along the surface. */

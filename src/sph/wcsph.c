@@ -272,6 +272,7 @@ const tobi_method tobi_wcsph = {
     .doc = "Weakly compressible SPH: pressure by the Tait equation, short steps, no solver.",
     .density_ratio = 2,
     .mixes_with_bodies = 1,
+    .mixes_with_solids = 1,
     .params = &tobi_wcsph_table,
     .fields = &sph_field_list,
     .outputs = sph_outputs,

@@ -11,7 +11,7 @@
 /* What a method computes beside fluids of different density: bits of tobi_company. */
 static unsigned allows(const tobi_method *m)
 {
-    return m->mixes_with_bodies ? TOBI_WITH_BODIES | TOBI_WITH_SOLIDS : 0;
+    return (m->mixes_with_bodies ? TOBI_WITH_BODIES : 0) | (m->mixes_with_solids ? TOBI_WITH_SOLIDS : 0);
 }
 
 tobi_status tobi_mixture_check(const tobi_method *m, const tobi_fluid_def *fluid, const tobi_fluid_def *other,

@@ -53,7 +53,7 @@ static void oracle_isph_viscosity(check *c, int64_t i, const sums *s)
 {
     const isph_tensor *b = &view.inverse[i];
     const double inverse[3][3] = {{b->xx, b->xy, b->zx}, {b->xy, b->yy, b->yz}, {b->zx, b->yz, b->zz}};
-    const double share = (1 - view.gate[i])*view.dt*view.kinematic[0];
+    const double share = alone(i)*(1 - view.gate[i])*view.dt*view.kinematic[fluids[i]];
     for (int a = 0; a < view.dimension; a++) {
         double corrected = s->all[a];
         for (int k = 0; k < 3; k++)

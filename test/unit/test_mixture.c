@@ -79,8 +79,88 @@ static void test_layers(void **state)
     }
 }
 
+#define BODY(shape, more) "\"bodies\": [ { \"name\": \"b\", " shape more "} ],"
+#define BOX "\"box\": { \"min\": [0.14, 0.12], \"max\": [0.26, 0.28] }"
+#define DISC "\"sphere\": { \"centre\": [0.2, 0.2], \"radius\": 0.1 }"
+#define BUOY "\"box\": { \"min\": [0.12, 0.18], \"max\": [0.28, 0.34] }, \"dynamics\": \"free\", " \
+             "\"density\": 750, \"locked\": \"turn\""
+
+/* m2, of the water. */
+static double area_of_water(const tobi_world *w)
+{
+    const tobi_system *s = &w->system[0];
+    int64_t n = 0;
+    for (int64_t i = 0; i < s->particles.count; i++) n += s->particles.fluid[i] == 0;
+    return (double)n*s->smoothing.volume;
+}
+
+static tobi_body_info look_at_body(tobi_world *w)
+{
+    tobi_body_info at;
+    assert_int_equal(tobi_world_body(w, 0, &at), TOBI_OK);
+    return at;
+}
+
+/* m2: of the body that is below the water's level. Particles beside the disc do not fill all that it leaves,
+   so the level is found from how many there are. */
+static double area_in_water(const tobi_world *w, int disc)
+{
+    double in = 0.12*0.08;
+    for (int k = 0; k < 50 && disc; k++) {
+        const double above = 0.2 - (area_of_water(w) + in)/0.4;
+        in = 0.01*acos(above/0.1) - above*sqrt(0.01 - above*above);
+    }
+    return in;
+}
+
+/* Bodies that reach through both layers: the force on them is what they displace of either, and next to
+   nothing stirs. Of the box layers at rest are exact; the disc has 10 spacings across, where that of one
+   liquid is 0.7 % off. */
+static void test_bodies_in_layers(void **state)
+{
+    (void)state;
+    static const struct { const char *density; double light; int disc; } cases[] = {
+        { "500", 500, 0 }, { "1", 1, 0 }, { "500", 500, 1 }, { "1", 1, 1 } };
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        const int disc = cases[k].disc;
+        const double all = disc ? 0.0314159 : 0.12*0.16, tolerance = disc ? 0.01 : 0.005;
+        tobi_world *w;
+        tobi_error err = { 0 };
+        tobi_step_info info;
+        char fluids[800];
+        snprintf(fluids, sizeof fluids, WATER ", " OIL("%s"), cases[k].density);
+        must(make("isph", 1, fluids, disc ? BODY(DISC, "") : BODY(BOX, ""), &w, &err), &err);
+        must(tobi_world_advance(w, 0.5, &info, &err), &err);
+        const double in = area_in_water(w, disc), weight = 9.81*(1000*in + cases[k].light*(all - in)),
+                     lift = look_at_body(w).pressure_force[1]/weight;
+        if (!(fabs(lift - 1) < tolerance) || !(info.speed_max < 0.1*sqrt(9.81*0.02)))
+            fail_msg("case %d: force %g of buoyancy, speed %g m/s", (int)k, lift, info.speed_max);
+        tobi_world_destroy(w);
+    }
+}
+
+/* A body of the mean density of both liquids comes to float half in either. It swings for long: the mean of
+   some swings, within half a spacing. */
+static void test_buoy(void **state)
+{
+    (void)state;
+    tobi_world *w;
+    tobi_error err = { 0 };
+    double draft = 0;
+    int count = 0;
+    must(make("isph", 1, WATER ", " OIL("500"), BODY(BUOY, ""), &w, &err), &err);
+    for (double t = 3; t < 6; t += 0.05) {
+        must(tobi_world_advance(w, t, NULL, &err), &err);
+        const double bottom = look_at_body(w).position[1] - 0.08;
+        draft += (area_of_water(w)/0.4 - bottom)/(1 - 0.16/0.4);     /* the water that it displaces rises */
+        count++;
+    }
+    if (!(fabs(draft/count - 0.08) < 0.01)) fail_msg("draft %g m of 0.08", draft/count);
+    tobi_world_destroy(w);
+}
+
 /* Runs, halfway by a checkpoint; returns the hash. */
-static uint64_t run(const char *method, int threads, int halfway)
+static uint64_t run(const char *method, const char *more, int threads, int halfway)
 {
     tobi_world *w;
     tobi_error err = { 0 };
@@ -88,13 +168,13 @@ static uint64_t run(const char *method, int threads, int halfway)
     /* the heavier one lies on top */
     const char *fluids = "{ \"name\": \"brine\", \"density\": 1500, \"fill\": [ { \"box\": { "
                          "\"min\": [0, 0.2], \"max\": [0.4, 0.4] } } ] }, " WATER;
-    must(make(method, threads, fluids, "", &w, &err), &err);
+    must(make(method, threads, fluids, more, &w, &err), &err);
     must(tobi_world_advance(w, 0.05, NULL, &err), &err);
     if (halfway) {
         close(mkstemp(file));
         must(tobi_world_save(w, file, &err), &err);
         tobi_world_destroy(w);
-        must(make(method, threads, fluids, "", &w, &err), &err);
+        must(make(method, threads, fluids, more, &w, &err), &err);
         must(tobi_world_load(w, file, &err), &err);
         unlink(file);
     }
@@ -108,10 +188,11 @@ static void test_same_bits(void **state)
 {
     (void)state;
     static const char *const method[] = { "dfsph", "isph", "eisph", "wcsph" };
-    for (int k = 0; k < 4; k++) {
-        const uint64_t hash = run(method[k], 1, 0);
-        if (run(method[k], 3, 0) != hash) fail_msg("%s: other bits with 3 threads", method[k]);
-        if (run(method[k], 1, 1) != hash) fail_msg("%s: other bits after a restart", method[k]);
+    for (int k = 0; k < 8; k++) {
+        const char *more = k < 4 ? "" : BODY(BUOY, "");
+        const uint64_t hash = run(method[k%4], more, 1, 0);
+        if (run(method[k%4], more, 3, 0) != hash) fail_msg("%s: other bits with 3 threads", method[k%4]);
+        if (run(method[k%4], more, 1, 1) != hash) fail_msg("%s: other bits after a restart", method[k%4]);
     }
 }
 
@@ -239,9 +320,9 @@ static void test_interfaces(void **state)
    does not make their particles a lattice that holds it. */
 static void test_slow_bodies(void **state)
 {
-    static const char *const methods[] = { "dfsph", "wcsph" };
+    static const char *const methods[] = { "dfsph", "wcsph", "isph", "eisph" };
     (void)state;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 8; k++) {
         const double start = k%2 ? 0.06 : 0.26;
         char body[300];
         tobi_error err = { 0 };
@@ -267,9 +348,6 @@ static void test_mistakes(void **state)
     refuse("wcsph", "400", "", "wcsph computes fluids up to 1 : 2");
     refuse("eisph", "50", "", "eisph computes fluids up to 1 : 10");
     refuse("isph", "0.5", "", "1 : 2000; isph computes fluids up to 1 : 1000");
-    const char *box = "\"bodies\": [ { \"name\": \"box\", \"mesh\": \"" TOBI_SOURCE_DIR
-                      "/test/meshes/box.obj\" } ],";
-    refuse("isph", "500", box, "beside bodies isph takes fluids of one density; dfsph and wcsph take");
     refuse("dfsph", "500", "\"inlets\": [ { \"name\": \"in\", \"centre\": [0, 0.1], \"normal\": [1, 0], "
            "\"width\": 0.1, \"speed\": 0.1 } ],", "beside inlets or outlets dfsph takes fluids of one");
     refuse("isph", "500", "\"solids\": [ { \"name\": \"jelly\", \"fill\": [ { \"box\": { "
@@ -294,6 +372,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_layers),
+        cmocka_unit_test(test_bodies_in_layers),
+        cmocka_unit_test(test_buoy),
         cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_drop),
         cmocka_unit_test(test_jump),
