@@ -113,11 +113,10 @@ TOBI_API void tobi_rules_beside(const tobi_rules *rules, const tobi_world_def *w
 TOBI_API void tobi_rules_solid(const tobi_rules *rules, const tobi_world_def *world, const void *method_def,
                                const tobi_solid_def *solid);
 
-/* What stands beside the fluids of a world. */
-typedef enum tobi_company { TOBI_WITH_BODIES = 1, TOBI_WITH_SOLIDS = 2, TOBI_WITH_OPENINGS = 4 } tobi_company;
-/* Those of a fluid beside another one, and, as bits, tobi_company; keys are of the fluid. */
+/* Those of a fluid beside another one; openings: 1 where there are inlets or outlets. Keys are of the
+   fluid. */
 TOBI_API void tobi_rules_fluid(const tobi_rules *rules, const tobi_world_def *world,
-                               const tobi_fluid_def *fluid, const tobi_fluid_def *other, unsigned company);
+                               const tobi_fluid_def *fluid, const tobi_fluid_def *other, int openings);
 
 #ifdef __cplusplus
 }

@@ -91,7 +91,6 @@ typedef struct tobi_method {
     unsigned (*needs)(const tobi_system *s, int full);
     int planes;                                                  /* 1: it knows planes in the domain */
     double density_ratio;                                        /* largest over least of its fluids */
-    int mixes_with_bodies, mixes_with_solids;                    /* 1: beside those too */
     int fills_pipes;                             /* 1: inlets and outlets may leave no free surface */
     /* Smoothing kernel and support radius that the parameters ask for; driven: something is moved in a
        vessel full of liquid. */

@@ -144,16 +144,13 @@ static void tell_entry(void *user, const char *key, const tobi_error *why)
 static void check_mixture(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
 {
     const tobi_scene_fluid *fluid = &scene->fluids[entry->index];
-    const unsigned company = (is_empty(scene, "bodies") ? 0 : TOBI_WITH_BODIES) |
-                             (is_empty(scene, "solids") ? 0 : TOBI_WITH_SOLIDS) |
-                             (is_empty(scene, "inlets") ? 0 : TOBI_WITH_OPENINGS) |
-                             (is_empty(scene, "outlets") ? 0 : TOBI_WITH_OPENINGS);
+    const int openings = !is_empty(scene, "inlets") || !is_empty(scene, "outlets");
     spot at = { source, entry, 0 };
     const tobi_rules rules = { .tell = tell_entry, .user = &at };
     for (size_t k = 0; k < entry->index && !at.told; k++) {
         const tobi_scene_fluid *other = &scene->fluids[k];
         if (fluid->bound.good == fluid->bound.given && other->bound.good == other->bound.given)
-            tobi_rules_fluid(&rules, &scene->world, &fluid->def, &other->def, company);
+            tobi_rules_fluid(&rules, &scene->world, &fluid->def, &other->def, openings);
     }
 }
 

@@ -111,7 +111,6 @@ const tobi_method tobi_eisph = {
     .name = "eisph",
     .doc = "Incompressible SPH with an explicit update of the pressure: a few sweeps in place of a solve.",
     .density_ratio = 10,
-    .mixes_with_bodies = 1,
     .params = &tobi_eisph_table,
     .smoothing = choose_smoothing,
     .create = create,

@@ -371,7 +371,6 @@ const tobi_method tobi_isph = {
     .name = "isph",
     .doc = "Incompressible SPH: one Poisson equation per step, for forces and pressures.",
     .density_ratio = 1000,
-    .mixes_with_bodies = 1,
     .params = &tobi_isph_table,
     .smoothing = choose_smoothing,
     .create = create,

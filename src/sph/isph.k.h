@@ -312,8 +312,8 @@ TOBI_FN void isph_rows_start(const isph_view *v, int64_t i, isph_rows_acc *a)
     isph_gravity_at(v, i, g);
     a->px = lane_set(rest*g[0]); a->py = lane_set(rest*g[1]); a->pz = lane_set(rest*g[2]);
     a->bodies = 0;
-    a->whole = lane_set(0);
     if (soft) isph_rows_soft(v, i, a);
+    a->whole = a->sum;
 }
 
 /* Into the entries of the list: images add to those of their pairs. */

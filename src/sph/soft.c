@@ -126,9 +126,10 @@ static double find_layer(const tobi_system *s, int64_t k)
         for (int a = 0; a < 3; a++) n[a] += q->link[l].gradient[a];
     for (int a = 0; a < 3; a++) square += n[a]*n[a];
     for (int64_t l = q->first[k]; l < q->first[k + 1] && square > 0; l++) {
+        const double heavy = s->fluid[s->particles.fluid[q->link[l].particle]].density/s->fluid[0].density;
         double along = 0;
         for (int a = 0; a < 3; a++) along += q->link[l].gradient[a]*n[a];
-        if (q->link[l].rate > 0) sum += along*along/(square*q->link[l].rate);
+        if (q->link[l].rate > 0) sum += heavy*along*along/(square*q->link[l].rate);
     }
     return s->smoothing.volume*s->fluid[0].density*sum;
 }
@@ -524,12 +525,13 @@ double sph_soft_compliance(const tobi_system *s)
 double sph_soft_dt(const tobi_system *s)
 {
     const tobi_system *solids = solids_of(s)->solids;
-    double dt = INFINITY;
+    double dt = INFINITY, light, heavy;
     if (is_alone(s)) return dt;
+    tobi_system_densities(s, &light, &heavy);
     for (int k = 0; k < solids->solid_count; k++) {
         const tobi_solid_def *d = &solids->solids[k].def;
         if (d->liquid_friction == TOBI_NO_SLIP)
-            dt = fmin(dt, 0.5*sph_viscous_dt(s)*fmin(d->density/s->fluid[0].density, 1));
+            dt = fmin(dt, 0.5*sph_viscous_dt(s)*fmin(d->density/heavy, 1));
     }
     return dt;
 }

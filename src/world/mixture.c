@@ -1,6 +1,6 @@
 /* What several fluids in one world may not be: densities further apart than the method can compute, and
-   company that knows one density only. Drawback: company is told at the second fluid, not at the entry that
-   is too much. */
+   different beside inlets and outlets, which know one density only. Drawback: that is told at the second
+   fluid, not at the opening that is too much. */
 #include "world/mixture.h"
 #include "base/error.h"
 #include "base/param.h"
@@ -8,41 +8,30 @@
 #include <math.h>
 #include <string.h>
 
-/* What a method computes beside fluids of different density: bits of tobi_company. */
-static unsigned allows(const tobi_method *m)
-{
-    return (m->mixes_with_bodies ? TOBI_WITH_BODIES : 0) | (m->mixes_with_solids ? TOBI_WITH_SOLIDS : 0);
-}
-
 tobi_status tobi_mixture_check(const tobi_method *m, const tobi_fluid_def *fluid, const tobi_fluid_def *other,
-                               unsigned company, tobi_error *err)
+                               int openings, tobi_error *err)
 {
     const double ratio = fmax(fluid->density, other->density)/fmin(fluid->density, other->density);
-    const char *what = NULL, *name = other->name ? other->name : "";
+    const char *name = other->name ? other->name : "";
     if (!(ratio > 1)) return TOBI_OK;
     if (ratio > m->density_ratio*(1 + 1e-9))
         return tobi_fail(err, TOBI_UNSUPPORTED, "is %.10g kg/m3 and that of fluid '%s' is %.10g kg/m3: 1 : "
                          "%.6g; %s computes fluids up to 1 : %g%s", fluid->density, name, other->density,
-                         ratio,
-                         m->name, m->density_ratio,
+                         ratio, m->name, m->density_ratio,
                          m->density_ratio < TOBI_DENSITY_RATIO ? ", isph up to 1 : 1000" : "");
-    company &= ~allows(m);
-    if (company & TOBI_WITH_OPENINGS) what = "inlets or outlets";
-    if (company & TOBI_WITH_SOLIDS) what = "solids";
-    if (company & TOBI_WITH_BODIES) what = "bodies";
-    if (!what) return TOBI_OK;
-    return tobi_fail(err, TOBI_UNSUPPORTED, "is %.10g kg/m3 and that of fluid '%s' is %.10g kg/m3; beside %s "
-                     "%s takes fluids of one density%s", fluid->density, name, other->density, what, m->name,
-                     company & TOBI_WITH_OPENINGS ? "" : "; dfsph and wcsph take several there");
+    if (!openings) return TOBI_OK;
+    return tobi_fail(err, TOBI_UNSUPPORTED, "is %.10g kg/m3 and that of fluid '%s' is %.10g kg/m3; beside "
+                     "inlets or outlets %s takes fluids of one density", fluid->density, name, other->density,
+                     m->name);
 }
 
 void tobi_rules_fluid(const tobi_rules *r, const tobi_world_def *d, const tobi_fluid_def *fluid,
-                      const tobi_fluid_def *other, unsigned company)
+                      const tobi_fluid_def *other, int openings)
 {
     tobi_error why = { 0 };
     const tobi_method *m = tobi_method_find(d ? d->method : NULL);
     if (!r || !fluid || !other || !m || m->solids) return;
-    if (tobi_mixture_check(m, fluid, other, company, &why) != TOBI_OK) r->tell(r->user, "density", &why);
+    if (tobi_mixture_check(m, fluid, other, openings, &why) != TOBI_OK) r->tell(r->user, "density", &why);
 }
 
 static tobi_fluid_def describe(const tobi_fluid *f)
@@ -66,13 +55,10 @@ tobi_status tobi_mixture_add(const tobi_world *w, const tobi_fluid_def *def, tob
 tobi_status tobi_mixture_start(const tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = tobi_world_fluids(w);
-    const unsigned company = (w->sim.body_count > 0 ? TOBI_WITH_BODIES : 0) |
-                             (tobi_world_solids(w) ? TOBI_WITH_SOLIDS : 0) |
-                             (w->sim.opening_count > 0 ? TOBI_WITH_OPENINGS : 0);
     for (int k = 1; s && k < s->fluid_count; k++) {
         const tobi_fluid_def fluid = describe(&s->fluid[k]), other = describe(&s->fluid[0]);
         tobi_error why = { 0 };
-        if (tobi_mixture_check(s->method, &fluid, &other, company, &why) != TOBI_OK)
+        if (tobi_mixture_check(s->method, &fluid, &other, w->sim.opening_count > 0, &why) != TOBI_OK)
             return tobi_fail(err, why.status, "fluid '%s': density %s", s->fluid[k].name, why.text);
     }
     return TOBI_OK;

@@ -7,9 +7,9 @@
 #define TOBI_DENSITY_RATIO 1000.0
 
 /* TOBI_UNSUPPORTED, with words that follow "density", where two fluids are too far apart for the method, or
-   differ at all beside what it computes with one density only. company: bits of tobi_company. */
+   differ at all beside openings. */
 tobi_status tobi_mixture_check(const tobi_method *m, const tobi_fluid_def *fluid, const tobi_fluid_def *other,
-                               unsigned company, tobi_error *err);
+                               int openings, tobi_error *err);
 /* A fluid that is to join those of the world, before what stands beside them is known. */
 tobi_status tobi_mixture_add(const tobi_world *w, const tobi_fluid_def *def, tobi_error *err);
 /* All fluids, with all that stands beside them. */

@@ -350,8 +350,6 @@ static void test_mistakes(void **state)
     refuse("isph", "0.5", "", "1 : 2000; isph computes fluids up to 1 : 1000");
     refuse("dfsph", "500", "\"inlets\": [ { \"name\": \"in\", \"centre\": [0, 0.1], \"normal\": [1, 0], "
            "\"width\": 0.1, \"speed\": 0.1 } ],", "beside inlets or outlets dfsph takes fluids of one");
-    refuse("isph", "500", "\"solids\": [ { \"name\": \"jelly\", \"fill\": [ { \"box\": { "
-           "\"min\": [0.1, 0.1], \"max\": [0.2, 0.2] } } ] } ],", "beside solids isph takes fluids of one");
     tobi_world *w;
     tobi_error err = { 0 };
     tobi_world_def def = tobi_default_world_def();
