@@ -36,7 +36,7 @@ void sph_read(const tobi_system *s, const char *name, int64_t i, double *out)
     } else if (!strcmp(name, "density")) {
         out[0] = f->density[i]*s->fluid[p->fluid[i]].density;
     } else {
-        out[0] = f->surface[i];
+        out[0] = f->surface[i] != 0;
     }
 }
 

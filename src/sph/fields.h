@@ -47,7 +47,7 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
       "kg/m3, Pa s, m, 1: density, viscosity, distance from the interface, fluid") \
     X(tobi_float4, TOBI_F32, 4, interface,    TOBI_SCRATCH, SPH_NEED_PHASES, "1", \
       "normal of the interface, out of the fluid; w = curvature, 1/m") \
-    X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "1 at a free surface") \
+    X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "at a free surface 1; sparse: 2") \
     X(tobi_float4, TOBI_F32, 4, held,         TOBI_SCRATCH, SPH_NEED_OPENINGS, "m/s", \
       "velocity in a buffer; w: 1 + number of an inlet, < 0 of an outlet, 0: none") \
     X(int32_t,     TOBI_I32, 1, last_link,    TOBI_SCRATCH, 0, "1",    "last near-body entry, -1 = none")

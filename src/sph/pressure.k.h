@@ -142,7 +142,8 @@ TOBI_FN void sph_target_divergence_finish(const sph_view *v, int64_t i, sph_targ
 /* Source of the velocity equation, eq. (10): s = C v/dt for the velocity without pressure. At a free
    surface pressure only pushes: a particle that neither is compressed nor holds pressure is left out
    (precondition 0), and so is one that hardly touches another. Elsewhere s has either sign. In the same
-   pass product = A p, from accel = a(p) for the pressure p of the last step.
+   pass product = A p, from accel = a(p) for the pressure p of the last step. Sparse liquid may come
+   together until it has its density, eq. (10f): else drops that touch would hang on each other like a foam.
    totals[0]: |s|^2/diagonal, the scale of residuals. */
 TOBI_FN void sph_start_search(const sph_view *v, int64_t i, float r, int active, double *totals)
 {
@@ -173,6 +174,8 @@ TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_source_acc *a, 
 {
     float rate = sph_compression_value(v, i, &a->free, v->velocity, 1);
     if (v->exact) rate += v->target_divergence[i];
+    float room = 1 - v->density[i];
+    if (v->surface[i] == SPH_SPARSE && room > 0) rate -= v->inverse_dt*room;      /* eq. (10f) */
     float r = v->inverse_dt*rate;
     int active = v->diagonal[i] > v->isolated && !sph_held(v, i) &&
                  (!v->surface[i] || r > 0 || v->pressure[i] > sph_floor(v, i));

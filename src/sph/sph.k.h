@@ -141,10 +141,11 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     int flagged = div < v->surface_limit;
     /* in still water nothing is at a surface: that is how its level was chosen */
     v->surface[i] = flagged && !(tobi_reference_pressure(&v->reference, &v->position[i].x) > 0);
-    /* edges of the box and disorder lower div x as well, but on all sides alike */
+    /* edges of the box, disorder and spray lower div x as well, but on all sides alike */
     float nx = w.x - k*g.x, ny = w.y - k*g.y, nz = w.z - k*g.z, n2 = nx*nx + ny*ny + nz*nz;
     int sure = div < v->open_limit &&
                (div < v->sheet_limit || n2 > v->surface_gradient*v->surface_gradient);
+    if (v->surface[i] && 4*n2 < v->surface_gradient*v->surface_gradient) v->surface[i] = SPH_SPARSE;
     totals[3] += sure;
     /* beside walls disorder and the corners of the box make a gradient as well */
     if (share > 0 && div > 0.7f*(float)v->dimension) sure = 0;
@@ -159,7 +160,7 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     v->diagonal[i] = sph_diagonal(v, i, g, a, &t);
     float error = rho > 1 ? rho - 1 : v->surface[i] ? 0 : 1 - rho;
     totals[0] += error;
-    totals[1] += v->surface[i];
+    totals[1] += v->surface[i] != 0;
     totals[2] += v->diagonal[i];
     totals[6] = error > totals[6] ? error : totals[6];
 }

@@ -11,6 +11,9 @@ enum { TOBI_MAX_FLUIDS = 8 };
 /* A side of the domain seen from inside: distance = sign*(x[axis] - at); friction; velocity along itself. */
 typedef struct tobi_plane { int axis; float sign; double at; int no_slip; float velocity[3]; } tobi_plane;
 
+/* Of sph_view.surface: neighbours are missing on all sides alike, as in spray. */
+enum { SPH_SPARSE = 2 };
+
 typedef struct sph_view {
     int64_t count;
     /* particle arrays, see core/particles.h */
@@ -31,7 +34,7 @@ typedef struct sph_view {
     tobi_float4 *TOBI_RESTRICT phase, *TOBI_RESTRICT interface;   /* NULL with one fluid, phases.k.h */
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
     float *TOBI_RESTRICT pressure;            /* of the solve at hand; NULL for walls: none */
-    uint8_t *TOBI_RESTRICT surface;
+    uint8_t *TOBI_RESTRICT surface;           /* 1 at a free surface, SPH_SPARSE, or 0 */
     const uint8_t *TOBI_RESTRICT fluid;
     const tobi_float4 *TOBI_RESTRICT held;    /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none */
     const tobi_float4 *outlet_normal;         /* of each opening, by |w| - 1 */

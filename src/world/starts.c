@@ -63,8 +63,8 @@ static tobi_status note_gap(tobi_world *w, const tobi_region *r, tobi_error *err
         char text[240];
         if (box->periodic[a] || !(gap > GAP_LEAST*d && gap < GAP_MOST*d)) continue;
         if (w->sim.def.gravity[a]*(upper ? -1 : 1) > 0) continue;    /* the free surface, or a ceiling */
-        snprintf(text, sizeof text, "fill[%d] begins %.3g m from the side at the %s %c: it falls there, "
-                 "traps voids and stays too high; let it begin at the side\n",
+        snprintf(text, sizeof text, "fill[%d] begins %.3g m from the side at the %s %c: it falls there "
+                 "first; let it begin at the side\n",
                  r->number, gap, upper ? "upper" : "lower", "xyz"[a]);
         return tobi_world_add_notes(w, "fluid", w->system[0].fluid[r->owner].name, text, err);
     }

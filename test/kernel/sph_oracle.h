@@ -235,8 +235,9 @@ static void oracle_tensor(const oracle *o, const row *in, row *out, int i, int o
 
 static void oracle_moment(const oracle *o, const row *in, row *out, int i);
 
-/* 1: beyond doubt at a surface or on the rim of a cavity, 2: even beside walls. */
-static int oracle_open(const oracle *o, const row *in, int i)
+/* 1: beyond doubt at a surface or on the rim of a cavity, 2: even beside walls. *even: neighbours are missing
+   on all sides alike. */
+static int oracle_open(const oracle *o, const row *in, int i, int *even)
 {
     double div = o->dimension*in[i][RHO], slant[3], steep = 0;
     memcpy(slant, &in[i][WALL], sizeof slant);
@@ -247,6 +248,7 @@ static int oracle_open(const oracle *o, const row *in, int i)
             div -= g*x[a];
         }
     for (int a = 0; a < 3; a++) steep += slant[a]*slant[a];
+    *even = sqrt(steep) < 0.5*o->surface_gradient;
     int sure = div < o->surface_limit && (div < o->sheet_limit || sqrt(steep) > o->surface_gradient);
     return sure ? 1 + (in[i][RHO] == 0 || div <= 0.7*o->dimension) : 0;
 }
@@ -258,7 +260,8 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         double ww = o->volume*o->w_scale, gg = o->volume*o->g_scale, share = in[i][RHO], own[3], rest = 0;
         double rho = ww*oracle_w(o, 0), mean = (rho + share)*in[i][PAYLOAD], div = o->dimension*share;
         double tilted[3];
-        const int open = oracle_open(o, in, i);
+        int even;
+        const int open = oracle_open(o, in, i, &even);
         if (o->along) oracle_tensor(o, in, out, i, open == 2);
         if (o->along == 1) oracle_moment(o, in, out, i);
         for (int a = 0; a < 3; a++) own[a] = 2*in[i][WALL + a];
@@ -280,11 +283,11 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         out[i][MEAN] = mean;
         out[i][DIAG] = (own[0]*own[0] + own[1]*own[1] + own[2]*own[2] + rest)/o->rho0[o->fluid[i]];
         double still = pressure_of(&o->reference, &in[i][POS], 0), drop = 0;
-        out[i][SURF] = div < o->surface_limit && still == 0;
+        out[i][SURF] = div < o->surface_limit && still == 0 ? 1 + even : 0;
         if (share == 0 && out[i][SURF] == 0) out[i][PRES] += o->smooth*(mean - in[i][PAYLOAD]);
         e = e > 0 ? e : out[i][SURF] > 0 ? 0 : -e;
         t[0] += e;
-        t[1] += out[i][SURF];
+        t[1] += out[i][SURF] > 0;
         t[2] += out[i][DIAG];
         t[3] += open > 0;
         for (int a = 0; a < 3; a++) drop += o->reference.down[a]*(in[i][POS + a] - o->reference.corner[a]);

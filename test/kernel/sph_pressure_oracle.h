@@ -63,11 +63,12 @@ static double compression(const oracle *o, const row *in, int i, int field, doub
     return sum;
 }
 
-/* Eq. (10). */
+/* Eq. (10), (10f). */
 static void oracle_source(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {
         double s = (compression(o, in, i, VEL, in[i][FLUX]) + (o->along == 1 ? in[i][MIDWAY] : 0))/o->dt;
+        if (in[i][SURF] == 2) s -= fmax(0, 1 - in[i][RHO])/(o->dt*o->dt);
         int active = in[i][DIAG] > o->isolated &&
                      (in[i][SURF] == 0 || s > 0 || in[i][PRES] > fmin(in[i][CAPILLARY], 0));
         out[i][PRE] = active ? 1/in[i][DIAG] : 0;

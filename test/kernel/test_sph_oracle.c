@@ -474,7 +474,7 @@ static void measure_walls(const rig_case *k, wall_errors *e)
         }
         e->accel[walls] = fmax(e->accel[walls], sqrt(a2));
         e->density[walls] = fmax(e->density[walls], fabs(sph_fields_of(&g.p)->density[i] - 1));
-        e->open[walls] += sph_fields_of(&g.p)->surface[i];
+        e->open[walls] += sph_fields_of(&g.p)->surface[i] != 0;
     }
     rig_free(&g);
 }

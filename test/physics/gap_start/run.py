@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Water that begins beside the walls falls and traps voids: its level."""
+"""Water that begins beside the walls falls to them: its level."""
 import pathlib
 import sys
 
@@ -46,10 +46,10 @@ for dimension in case.pick((2,), (2, 3)):
         what = f"{dimension}-D, " + ("gap of 1.5 spacings" if gap else "begun at the sides")
         case.figure(f"{what}: level over that of the volume", level, "1 within 0.01", abs(level - 1) <= 0.01)
         case.state(f"{what}: share of particles at a free surface", share)
-        # Sides: a tenth of a spacing is 0.6 %. Gap: 4.4 % seen in 2-D.
-        limit = 0.06 if gap else 0.01
+        # Sides: a tenth of a spacing is 0.6 %. Gap: 1.1 % seen in 3-D; voids that stay are 4 to 6 %.
+        limit = 0.02 if gap else 0.01
         case.hold(f"{what}: level within {limit:g}", abs(level - 1) <= limit)
         shares[gap] = share
-    # The voids are told by surface_share in history.csv: 0.17 and 0.06 seen in 2-D.
-    case.hold(f"{dimension}-D: more particles at a surface with a gap", shares[1.5*D] > 1.3*shares[0])
+    # Voids would be told by surface_share in history.csv, as 0.17 beside 0.06.
+    case.hold(f"{dimension}-D: with a gap no voids stay", shares[1.5*D] < 1.3*shares[0])
 case.finish()
