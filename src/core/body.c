@@ -155,8 +155,8 @@ tobi_status tobi_body_ask_motion(const tobi_body *b, double t, int64_t n, const 
     return TOBI_OK;
 }
 
-static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
-                            double (*out)[3], tobi_error *err)
+tobi_status tobi_body_locate(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
+                             double (*out)[3], tobi_error *err)
 {
     if (b->rigid.kind != TOBI_PRESCRIBED && !b->swimmer) {
         pose_points(b, b->rest.centre, b->rigid.position, b->rigid.orientation, n, rest, out);
@@ -175,7 +175,7 @@ static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const doubl
 /* Vertices at t relative to the box. */
 static tobi_status move_vertices(const tobi_body *b, double t, double (*out)[3], tobi_error *err)
 {
-    TOBI_TRY(evaluate(b, t, b->mesh.vertex_count, (const double (*)[3])b->mesh.vertices, out, err));
+    TOBI_TRY(tobi_body_locate(b, t, b->mesh.vertex_count, (const double (*)[3])b->mesh.vertices, out, err));
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         for (int a = 0; a < 3; a++) out[i][a] += (b->is_absent ? b->away[a] : 0) - b->lower[a];
     return TOBI_OK;
@@ -189,7 +189,7 @@ static tobi_status place_frame(tobi_body *b, double t, double centre[3], double 
     double arm = 0.01*cbrt(fabs(b->rest.volume)), rest[4][3], now[4][3];
     for (int k = 0; k < 4; k++)
         for (int a = 0; a < 3; a++) rest[k][a] = b->rest.centre[a] + (k == a + 1 ? arm : 0);
-    TOBI_TRY(evaluate(b, t, 4, (const double (*)[3])rest, now, err));
+    TOBI_TRY(tobi_body_locate(b, t, 4, (const double (*)[3])rest, now, err));
     memcpy(centre, now[0], sizeof now[0]);
     for (int k = 0; k < 3; k++) {
         for (int a = 0; a < 3; a++) frame[k][a] = now[k + 1][a] - now[0][a];
@@ -314,7 +314,7 @@ void tobi_body_restore(tobi_body *b, const double (*vertex)[3], const tobi_body_
 
 tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err)
 {
-    return evaluate(b, t, b->particle_count, (const double (*)[3])b->particle_rest, b->particle, err);
+    return tobi_body_locate(b, t, b->particle_count, (const double (*)[3])b->particle_rest, b->particle, err);
 }
 
 /* Said before allocating: a spacing far below the mesh's size asks for more than the machine has. */

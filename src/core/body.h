@@ -134,6 +134,10 @@ void tobi_body_restore(tobi_body *b, const double (*vertex)[3], const tobi_body_
 /* From where the motion of a swimmer has n points at the body's present time to where they are in the
    world. */
 void tobi_body_pose_shape(const tobi_body *b, int64_t n, double (*at)[3]);
+/* Where points of the body, in the pose of its mesh, are at t; those of one that moves by forces where its
+   present pose has them. World coordinates. */
+tobi_status tobi_body_locate(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
+                             double (*out)[3], tobi_error *err);
 /* Moves the body's own particles to time t, for output. */
 tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err);
 /* Evaluates the motion at t + dt: `next` and the mean velocities of the step, (next - vertex)/dt in

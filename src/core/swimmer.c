@@ -157,7 +157,7 @@ static void find_flow(tobi_body *b, double dt)
 {
     tobi_swimmer *w = b->swimmer;
     tobi_rigid rest = b->rigid;
-    double m[3][3], arm[3];
+    double (*m)[3] = w->still, arm[3];
     memset(rest.momentum, 0, sizeof rest.momentum);
     memset(rest.velocity, 0, sizeof rest.velocity);
     memset(rest.angular_velocity, 0, sizeof rest.angular_velocity);
@@ -182,6 +182,20 @@ tobi_status tobi_swimmer_predict(tobi_body *b, double t, double dt, tobi_error *
         for (int a = 0; a < 3; a++)
             vec3_add_scaled(moments[a], moments[a], w->mass[i]*w->now[i][a], w->next[i]);
     find_flow(b, dt);
+    return TOBI_OK;
+}
+
+tobi_status tobi_swimmer_carry(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
+                               double (*out)[3], tobi_error *err)
+{
+    const tobi_swimmer *w = b->swimmer;
+    TOBI_TRY(ask(b, t, n, rest, out, err));
+    for (int64_t i = 0; i < n; i++) {
+        double arm[3];
+        vec3_sub(arm, out[i], w->next_centre);
+        for (int a = 0; a < 3; a++)
+            out[i][a] = b->lower[a] + (b->rigid.position[a] + vec3_dot(w->still[a], arm));
+    }
     return TOBI_OK;
 }
 

@@ -19,6 +19,8 @@ typedef struct tobi_swimmer {
     double (*flow)[3];               /* [vertices] m/s, world axes, mean over the step: what is left of
                                         the velocity without momentum and angular momentum         */
     double (*point_flow)[3];         /* [quadrature points] the same                               */
+    double still[3][3];              /* what turns the motion's axes to the world's at the end of the step,
+                                        where the body has no momentum                             */
     double steer[3], next_steer[3];  /* of the present shape; of the next, by the control program  */
     double least_inertia;            /* kg m2: less is that of no body                             */
     int dimension;
@@ -31,6 +33,10 @@ void tobi_swimmer_free(tobi_swimmer *w);
 /* The shape at t + dt by next_steer, flow over the step, and the moments between both shapes, which the drift
    reads. Changes nothing that a failed step would have to take back. */
 tobi_status tobi_swimmer_predict(struct tobi_body *b, double t, double dt, tobi_error *err);
+/* Then: where points of the body, in the coordinates of its motion at rest, would be at t, the end of the
+   step, if it had no momentum; in world coordinates. */
+tobi_status tobi_swimmer_carry(const struct tobi_body *b, double t, int64_t n, const double (*rest)[3],
+                               double (*out)[3], tobi_error *err);
 /* Makes the shape at the end of the step the present one, with its inertia and angular velocity. */
 void tobi_swimmer_advance(struct tobi_body *b);
 /* For checkpoints: rows of three doubles, count + TOBI_SWIMMER_MORE of them, that hold the present shape. */

@@ -93,7 +93,7 @@ tobi_status mpm_clamp_find_rest(const tobi_system *s, int64_t i, double *stray, 
     for (int round = 0; round < ROUNDS; round++) {
         for (int k = 1; k < 4; k++)
             for (int a = 0; a < 3; a++) rest[k][a] = rest[0][a] + (a == k - 1 ? arm : 0);
-        TOBI_TRY(tobi_body_ask_motion(b, s->sim->time, 4, (const double (*)[3])rest, now, err));
+        TOBI_TRY(tobi_body_locate(b, s->sim->time, 4, (const double (*)[3])rest, now, err));
         for (int a = 0; a < 3; a++) {
             off[a] = now[0][a] - b->lower[a] - x[a];
             for (int k = 0; k < 3; k++) m[3*a + k] = (now[1 + k][a] - now[0][a])/arm;
@@ -201,10 +201,12 @@ static tobi_status ask_places(mpm_clamp *c, const tobi_system *s, int body, tobi
     for (int64_t n = first; n < first + count; n++)
         for (int a = 0; a < 3; a++)
             c->place[0][n][a] = b->rest.centre[a] + (double)(&f->clamp[c->held[n].particle].x)[a];
+    const double (*rest)[3] = (const double (*)[3])(c->place[0] + first);
     for (int end = 0; end < 2; end++) {
         double (*at)[3] = c->place[1 + end] + first;
-        TOBI_TRY(tobi_body_ask_motion(b, s->sim->time + s->sim->way + (end ? s->dt : 0), count,
-                                      (const double (*)[3])(c->place[0] + first), at, err));
+        const double t = s->sim->time + s->sim->way + (end ? s->dt : 0);
+        TOBI_TRY(end && b->swimmer ? tobi_swimmer_carry(b, t, count, rest, at, err)
+                                   : tobi_body_locate(b, t, count, rest, at, err));
         for (int64_t n = 0; n < count; n++) vec3_sub(at[n], at[n], b->lower);
     }
     return TOBI_OK;

@@ -159,10 +159,12 @@ static void find_deforming(const tobi_body *b, int32_t triangle, const double ba
     const int32_t *t = b->mesh.triangles[triangle];
     double turning[3];
     vec3_cross(turning, b->rigid.angular_velocity, c->arm);
+    const int driven = b->rigid.kind == TOBI_PRESCRIBED;
+    const double (*velocity)[3] = (const double (*)[3])(driven ? b->vertex_velocity :
+                                                        b->swimmer ? b->swimmer->flow : NULL);
     for (int a = 0; a < 3; a++) {
-        c->deforming[a] = b->rigid.kind == TOBI_PRESCRIBED ? -b->rigid.velocity[a] - turning[a] : 0;
-        for (int k = 0; k < 3 && b->rigid.kind == TOBI_PRESCRIBED; k++)
-            c->deforming[a] += barycentric[k]*b->vertex_velocity[t[k]][a];
+        c->deforming[a] = driven ? -b->rigid.velocity[a] - turning[a] : 0;
+        for (int k = 0; k < 3 && velocity; k++) c->deforming[a] += barycentric[k]*velocity[t[k]][a];
     }
 }
 

@@ -8,7 +8,6 @@
 static const char *find_reason(const tobi_scene_body *b)
 {
     if (b->def.blade) return "is a blade, which cuts solids";
-    if (b->motion && !b->def.motion_rigid && b->def.dynamics != TOBI_PRESCRIBED) return "swims";
     if (b->def.absent_from > 0) return "is absent for a time";
     return NULL;
 }

@@ -27,11 +27,6 @@ tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
     tobi_system *s = &w->system[0];
     tobi_rigid_world world;
     if (!tobi_body_any_free(s->sim->bodies, s->sim->body_count) || w->dynamics) return TOBI_OK;
-    for (int k = 0; k < s->sim->body_count && tobi_world_solids(w); k++)
-        if (s->sim->bodies[k].swimmer)
-            return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s' changes its shape and moves by forces, which "
-                             "%s does not know; fluids of dfsph, isph and wcsph do", s->sim->bodies[k].name,
-                             tobi_world_solids(w)->method->name);
     TOBI_TRY(tobi_constraints_start(&w->sim.constraints, w->sim.bodies, s->box.dimension, err));
     char *notes = malloc(NOTES);
     if (!notes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for notes");

@@ -11,7 +11,6 @@
 static const char *find_reason(const tobi_body *b)
 {
     if (b->blade) return "is a blade, which cuts solids";
-    if (b->swimmer) return "swims";
     if (b->absent[0] > 0) return "is absent for a time";
     return NULL;
 }

@@ -237,10 +237,6 @@ static void what_is_refused(void **state)
     s.body.absent_from = 1;
     refuse(s, TOBI_UNSUPPORTED, "is absent for a time; such a body holds no solid");
     s = make_setup();
-    s.body.motion = turn;
-    s.body.dynamics = TOBI_FREE;
-    refuse(s, TOBI_UNSUPPORTED, "swims; such a body holds no solid");
-    s = make_setup();
     s.solid.fill.box_min[2] = 0.02;
     s.solid.fill.box_max[2] = 0.1;
     refuse(s, TOBI_INVALID, "nearer than a spacing, 0.0125 m, to it");
