@@ -333,7 +333,6 @@ static void refuse(tobi_body_def def, const char *words)
     tobi_error err = { 0 };
     d.domain_max[0] = d.domain_max[1] = d.domain_max[2] = 10;
     d.spacing = 0.5;
-    if (def.mass == -1) d.method = "mlsmpm", def.mass = 0;
     OK(tobi_world_create(&d, NULL, &w, &err));
     def.name = "eel";
     def.motion_user = (void *)&end;
@@ -351,7 +350,7 @@ static void test_bodies_refused(void **state)
     (void)state;
     def.dynamics = TOBI_FREE;
     def.motion = flatten;
-    tobi_body_def rigid = def, heavy = def, vessel = def, hinged = def, mpm = def, dry = def;
+    tobi_body_def rigid = def, heavy = def, vessel = def, hinged = def, dry = def;
     rigid.motion_rigid = 1;
     refuse(rigid, "has a rigid motion");
     heavy.inertia[0] = heavy.inertia[1] = heavy.inertia[2] = 1;
@@ -360,8 +359,6 @@ static void test_bodies_refused(void **state)
     refuse(vessel, "a vessel does not");
     hinged.hinge_axis[2] = 1;
     refuse(hinged, "a body on a hinge or guide does not");
-    mpm.mass = -1;
-    refuse(mpm, "which mlsmpm does not know");
     dry.density = 0;
     refuse(dry, "density");
 }
