@@ -179,6 +179,29 @@ tobi_status sph_find_boundaries(tobi_system *s, sph_view *v, const sph_kernels *
     return TOBI_OK;
 }
 
+/* Whether what is empty is too little for half a layer along the least side and along bodies: a lattice that
+   bodies cut lacks as much. Sides that liquid leaves by are no vessel. m3, in 2-D m2. */
+static int has_no_room(const tobi_system *s)
+{
+    const double d = s->smoothing.spacing, *size = s->box.size;
+    double whole = 1, least = INFINITY, bodies = 0, area = 0;
+    for (int a = 0; a < s->box.dimension; a++) {
+        if (s->sim->def.wall_min[a] == TOBI_WALL_OPEN || s->sim->def.wall_max[a] == TOBI_WALL_OPEN) return 0;
+        whole *= size[a];
+    }
+    for (int a = 0; a < s->box.dimension; a++) least = fmin(least, whole/size[a]);
+    for (int k = 0; k < s->sim->body_count; k++) {
+        if (s->sim->bodies[k].is_absent) continue;
+        bodies += fabs(s->sim->bodies[k].rest.volume);
+        area += s->sim->bodies[k].rest.area;
+    }
+    return whole - bodies - (double)s->particles.count*s->smoothing.volume < 0.5*d*(least + area);
+}
+
+/* Of the particles of a surface across a cube as many as the liquid: those that surely lie at one, by which a
+   vessel is open; where there is hardly room for a surface it takes more of them. */
+static const double SURFACE = 0.1, SURFACE_WITHOUT_ROOM = 0.5;
+
 tobi_status sph_classify_vessel(tobi_system *s, sph_view *v, const sph_kernels *k, double *vessel,
                                  double *clock, tobi_error *err)
 {
@@ -190,7 +213,8 @@ tobi_status sph_classify_vessel(tobi_system *s, sph_view *v, const sph_kernels *
     v->smooth = 0;
     launch(s, v, k->sph_density, t);
     sph_of(s)->lowest = t[7];
-    int full = t[3] < 0.1*(s->box.dimension == 3 ? cbrt(count*count) : sqrt(count));
+    const double across = s->box.dimension == 3 ? cbrt(count*count) : sqrt(count);
+    const int full = t[3] < (has_no_room(s) ? SURFACE_WITHOUT_ROOM : SURFACE)*across;
     if (!sph_has_openings(s)) *vessel = full ? SPH_VESSEL_FULL : SPH_VESSEL_OPEN;
     return TOBI_OK;
 }
