@@ -116,5 +116,6 @@ const tobi_method tobi_eisph = {
     .create = create,
     .max_dt = choose_dt,
     .begin = begin,
+    .rough_forces = 1,
     ISPH_VERBS
 };

@@ -377,5 +377,6 @@ const tobi_method tobi_isph = {
     .max_dt = isph_choose_dt,
     .begin = isph_begin,
     .fills_pipes = 1,
+    .rough_forces = 1,
     ISPH_VERBS
 };

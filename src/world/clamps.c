@@ -104,10 +104,26 @@ static tobi_status start_clamp(const tobi_world *w, int solid, int n, tobi_error
     return at_name(d, solid, n, status, err);
 }
 
-tobi_status tobi_world_start_clamps(const tobi_world *w, tobi_error *err)
+/* Pressure on the section between a body and a solid does not cancel to rounding: one that nothing else holds
+   sets off in water at rest. */
+static tobi_status note_push(tobi_world *w, const tobi_solid *d, const tobi_body *b, tobi_error *err)
+{
+    const tobi_method *m = w->system[0].method;
+    char text[240];
+    if (!m->rough_forces || b->rigid.kind == TOBI_PRESCRIBED) return TOBI_OK;
+    snprintf(text, sizeof text, "by %s the pressure on the section between it and body '%s' does not cancel: "
+             "under water both are pushed while all is at rest; dfsph does not do that\n", m->name, b->name);
+    return tobi_world_add_notes(w, "solid", d->name, text, err);
+}
+
+tobi_status tobi_world_start_clamps(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = tobi_world_solids(w);
     for (int k = 0; s && k < s->solid_count; k++)
-        for (int n = 0; n < s->solids[k].clamp_count; n++) TOBI_TRY(start_clamp(w, k, n, err));
+        for (int n = 0; n < s->solids[k].clamp_count; n++) {
+            const tobi_solid *d = &s->solids[k];
+            TOBI_TRY(start_clamp(w, k, n, err));
+            TOBI_TRY(note_push(w, d, &w->sim.bodies[d->clamp[n]], err));
+        }
     return TOBI_OK;
 }

@@ -98,7 +98,7 @@ tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
 /* Finds the bodies that solids are clamped to, before these are placed; refuses those that cannot hold. */
 tobi_status tobi_world_find_clamps(tobi_world *w, tobi_error *err);
 /* Asks bodies that deform where they hold particles; refuses a solid of which a body holds none. */
-tobi_status tobi_world_start_clamps(const tobi_world *w, tobi_error *err);
+tobi_status tobi_world_start_clamps(tobi_world *w, tobi_error *err);
 /* Adds a note for each stationary solid that is too light to clamp what is bonded to it. */
 tobi_status tobi_world_note_clamps(tobi_world *w, tobi_error *err);
 /* Adds a note for each solid that is a liquid, which the SPH methods compute better. */

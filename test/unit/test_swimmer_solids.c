@@ -173,6 +173,21 @@ static tobi_world *make_wet_world(const char *method, int kind, int threads)
     return world;
 }
 
+/* By isph both are pushed in water at rest, which is told. */
+static void a_push_is_told(void **state)
+{
+    static const char *const methods[] = { "dfsph", "isph" };
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        tobi_world *world = make_wet_world(methods[k], HOLDS, 1);
+        int told = 0;
+        for (int n = 0; tobi_world_note(world, n); n++)
+            told += strstr(tobi_world_note(world, n), "between it and body 'fish' does not cancel") != NULL;
+        assert_int_equal(told, k);
+        tobi_world_destroy(world);
+    }
+}
+
 static void bits(void **state)
 {
     (void)state;
@@ -194,6 +209,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(momenta_are_kept),
         cmocka_unit_test(what_it_holds_goes_along),
+        cmocka_unit_test(a_push_is_told),
         cmocka_unit_test(bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
