@@ -10,6 +10,8 @@
 
 #define PLASTIC 3.0          /* times gravity and step: slower approaches do not bounce                 */
 #define SAGITTA 0.3          /* of the least thickness: twice what a corner's arc may leave its chord     */
+#define LONGEST (1.0/60)     /* s: a step of small bodies                                               */
+#define FALL 0.1             /* sqrt(thickness/g), of the thinnest: one of large bodies                 */
 #define PLASTIC_LEAST 1e-3   /* m/s, the same without gravity                                           */
 
 /* --- start ------------------------------------------------------------------------------------- */
@@ -104,7 +106,9 @@ static void note_shapes(const tobi_dynamics_state *d, char *notes, size_t room)
 
 double tobi_rigid_step_limit(const tobi_dynamics_state *d)
 {
-    double g = vec3_length(d->world.gravity), limit = 1.0/60;
+    double g = vec3_length(d->world.gravity), limit = LONGEST;
+    if (g > 0 && d->thinnest < INFINITY)             /* ships may take longer steps than their models */
+        limit = fmax(limit, FALL*sqrt(d->thinnest/g));
     for (int k = 0; k < d->count; k++) {
         const tobi_rigid *r = &d->bodies[k].rigid;
         if (r->kind == TOBI_PRESCRIBED) continue;

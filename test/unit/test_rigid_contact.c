@@ -228,6 +228,26 @@ static void test_balls(void **state)
     rig_close(&g);
 }
 
+/* Steps grow with the root of the size: those of a box of 100 m are not those of a box of 1 m. */
+static void test_steps_of_large_bodies(void **state)
+{
+    double limit[2];
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        const double side = k ? 100 : 1;
+        rig g;
+        rig_open(&g, 20*side, DOWN);
+        tobi_body_def def = rig_def();
+        def.spacing = side;
+        rig_box(&g, def, (double[3]){ side, side, side }, (double[3]){ 5*side, 5*side, 2*side });
+        rig_start(&g);
+        limit[k] = tobi_rigid_step_limit(g.state);
+        rig_close(&g);
+    }
+    assert_float_equal(limit[1], 10*limit[0], 1e-6);
+    assert_true(limit[0] > 1.0/60 && limit[0] < 0.02);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -235,6 +255,7 @@ int main(void)
         cmocka_unit_test(test_box_on_slope), cmocka_unit_test(test_stack),
         cmocka_unit_test(test_turned_stack), cmocka_unit_test(test_collision),
         cmocka_unit_test(test_balls),     cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_steps_of_large_bodies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
