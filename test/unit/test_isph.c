@@ -444,6 +444,30 @@ static void water_around_a_disc_rests(void **state)
     }
 }
 
+/* A free square in a full vessel: its figure is a miss that has no limit yet. */
+static void a_square_in_a_full_vessel(void **state)
+{
+    static const char text[] =
+        "{ \"method\": \"isph\", \"dimension\": 2, \"threads\": 1, \"spacing\": 0.0125, \"end_time\": 6,"
+        "\"domain\": { \"min\": [0, 0], \"max\": [0.6, 0.5] }, \"fluids\": [ { \"name\": \"water\","
+        "\"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [0.6, 0.5] } } ] } ], \"bodies\": ["
+        "{ \"name\": \"box\", \"box\": { \"min\": [0.25, 0.2], \"max\": [0.35, 0.3] }, \"density\": 995,"
+        "\"dynamics\": \"free\" } ] }";
+    tobi_step_info info;
+    tobi_world *w;
+    (void)state;
+    OK(start_scene(text, &w, &err));
+    for (int k = 1; k <= 6; k++) {
+        tobi_error err = { 0 };
+        const tobi_status status = tobi_world_advance(w, 0.5*k, &info, &err);
+        print_message("%g s: %.2g J/m, %s\n", 0.5*k, info.kinetic_energy,
+                      status == TOBI_OK ? "goes on" : err.text);
+        if (status != TOBI_OK) break;
+        if (k == 1) assert_true(info.kinetic_energy < 0.01);      /* 0.49 N/m of buoyancy move it by 3 mm */
+    }
+    tobi_world_destroy(w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -461,6 +485,7 @@ int main(void)
         cmocka_unit_test(a_round_post_that_turns_stirs_nothing),
         cmocka_unit_test(a_slab_flies_until_it_arrives),
         cmocka_unit_test(water_around_a_disc_rests),
+        cmocka_unit_test(a_square_in_a_full_vessel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -151,8 +151,17 @@ static void what_it_holds_goes_along(void **state)
     }
 }
 
-/* The same in a box of water around both. */
-static tobi_world *make_wet_world(const char *method, int kind, int threads)
+/* As a shape that does not change. */
+static tobi_status stand(void *user, double t, int64_t n, const double (*rest)[3], double (*out)[3],
+                         tobi_error *err)
+{
+    (void)user, (void)t, (void)err;
+    memcpy(out, rest, (size_t)n*sizeof *out);
+    return TOBI_OK;
+}
+
+/* The same in a box of water around both; with gravity the plate stands, and the water has a surface. */
+static tobi_world *make_wet_world(const char *method, int kind, double gravity, int threads)
 {
     setup s = make_setup(kind, 2);
     tobi_fluid_def fluid = tobi_default_fluid_def();
@@ -165,6 +174,11 @@ static tobi_world *make_wet_world(const char *method, int kind, int threads)
         s.solid.world.domain_min[a] = water.box_min[a] = -0.45;
         s.solid.world.domain_max[a] = water.box_max[a] = 0.45;
     }
+    s.solid.world.gravity[1] = -gravity;
+    if (gravity > 0) {
+        s.body.motion = stand;
+        water.box_max[1] = 0.35;
+    }
     OK(tobi_world_create(&s.solid.world, NULL, &world, &err));
     OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
     OK(tobi_world_add_solid(world, &s.solid.solid, &s.solid.fill, 1, &err));
@@ -173,17 +187,23 @@ static tobi_world *make_wet_world(const char *method, int kind, int threads)
     return world;
 }
 
-/* By isph both are pushed in water at rest, which is told. */
+/* By isph both are pushed in water at rest, which is told; its figure is a miss that has no limit yet. By
+   dfsph they sway. */
 static void a_push_is_told(void **state)
 {
     static const char *const methods[] = { "dfsph", "isph" };
     (void)state;
     for (int k = 0; k < 2; k++) {
-        tobi_world *world = make_wet_world(methods[k], HOLDS, 1);
+        tobi_world *world = make_wet_world(methods[k], HOLDS, 9.81, 1);
+        const tobi_rigid *r = &world->sim.bodies[0].rigid;
         int told = 0;
         for (int n = 0; tobi_world_note(world, n); n++)
             told += strstr(tobi_world_note(world, n), "between it and body 'fish' does not cancel") != NULL;
         assert_int_equal(told, k);
+        OK(tobi_world_advance(world, 0.3, NULL, &err));
+        print_message("%s: a plate with a fin goes at %.2g m/s in water at rest\n", methods[k],
+                      r->velocity[0]);
+        if (k == 0) assert_true(fabs(r->velocity[0]) < 0.05);
         tobi_world_destroy(world);
     }
 }
@@ -197,7 +217,7 @@ static void bits(void **state)
         tobi_world *world[3];
         for (int n = 0; n < 3; n++) {
             s.solid.world.threads = 1 + n;
-            world[n] = k < 2 ? make_world(&s) : make_wet_world(methods[k/2], k%2, 1 + n);
+            world[n] = k < 2 ? make_world(&s) : make_wet_world(methods[k/2], k%2, 0, 1 + n);
         }
         solid_check_bits(world[0], world[1], world[2]);
         for (int n = 0; n < 3; n++) tobi_world_destroy(world[n]);
