@@ -18,10 +18,11 @@ enum {
 /* The mirror of a pair at one body. */
 typedef struct isph_plane {
     int32_t mirror[2];               /* of i and of j                                               */
-    double normal[3], velocity[3], velocity_change[3];
+    double normal[3];
     double size;                     /* 1: square of the normal before its length is one            */
     double sum[3];                   /* m, of the offsets of both particles                         */
     double weight;
+    int reaches, meets;              /* 1: its image may be within reach, so may one in others too  */
 } isph_plane;
 
 /* One particle's images at bodies: where the walk is, and the group at hand. */
@@ -64,8 +65,6 @@ TOBI_FN int isph_find_plane(const isph_view *v, int32_t own, int32_t other, isph
     p->weight = both < 0 ? 0 : both < 1 ? both : 1;
     for (int c = 0; c < 3; c++) {
         p->normal[c] = a->normal[c] + b->normal[c];
-        p->velocity[c] = 0.5*(a->velocity[c] + b->velocity[c]);
-        p->velocity_change[c] = 0.5*(a->velocity_change[c] + b->velocity_change[c]);
         p->sum[c] = a->offset[c] + b->offset[c];
         p->size += p->normal[c]*p->normal[c];
     }
@@ -77,18 +76,34 @@ TOBI_FN void isph_normalise_plane(isph_plane *p)
     for (int c = 0; c < 3; c++) p->normal[c] /= sqrt(p->size);
 }
 
-/* Most images are out of reach: of the only plane r^2 = o^2 + 4 s_i s_j tells it before roots are drawn. */
-TOBI_FN int isph_walk_misses(const isph_walk *w)
+/* m/s: of the plane along a direction, and its change. */
+TOBI_FN void isph_plane_speed(const isph_view *v, const isph_plane *p, const double along[3], double speed[2])
 {
-    const isph_plane *p = &w->plane[0];
-    double own = 0, other = 0, square = 0;
-    if (w->planes != 1 || w->reflections.total != 1) return 0;
+    const isph_mirror *a = &v->mirror[p->mirror[0]], *b = &v->mirror[p->mirror[1]];
+    speed[0] = speed[1] = 0;
+    for (int c = 0; c < 3; c++) {
+        speed[0] += 0.5*(a->velocity[c] + b->velocity[c])*along[c];
+        speed[1] += 0.5*(a->velocity_change[c] + b->velocity_change[c])*along[c];
+    }
+}
+
+/* Most images are out of reach, which is told before roots are drawn: in one plane r^2 = o^2 + 4 s_i s_j; in
+   several an image is no nearer than s_i + s_j of each, and both particles stand before all of them. */
+TOBI_FN void isph_find_reach(const isph_walk *w, isph_plane *p)
+{
+    const double far2 = ISPH_REACH*w->v->h*w->v->h, before = -1e-6*w->v->h;
+    double own = 0, other = 0, both = 0, square = 0;
+    p->reaches = p->meets = 1;
+    if (w->reflections.total != 1) return;
     for (int a = 0; a < 3; a++) {
         own += (p->sum[a] + w->offset[a])*p->normal[a];
         other += (p->sum[a] - w->offset[a])*p->normal[a];
+        both += p->sum[a]*p->normal[a];
         square += w->offset[a]*w->offset[a];
     }
-    return (square - ISPH_REACH*w->v->h*w->v->h)*p->size + own*other > 0;
+    if (own < before || other < before) p->reaches = p->meets = 0;
+    if ((square - far2)*p->size + own*other > 0) p->reaches = 0;
+    if (both*both > far2*p->size) p->meets = 0;
 }
 
 /* How much of the image in both of two faces there is: all of it in a corner of at most 90 degrees; images in
@@ -103,6 +118,7 @@ TOBI_FN double isph_planes_meet(const isph_walk *w, int p, int q)
         behind += (a->sum[x] - b->sum[x])*a->normal[x];
     }
     const double least = 0.2*w->v->spacing;
+    if (!a->meets || !b->meets) return 0;
     if (fabs(c) >= ISPH_TWO_FACES || before < least || behind < least) return 0;
     const double whole = 2*M_PI/acos(-c) - 3;
     return whole < 1 ? whole : 1;
@@ -111,16 +127,20 @@ TOBI_FN double isph_planes_meet(const isph_walk *w, int p, int q)
 /* Images of the pair: in each plane; where faces of a body meet, in two and three at once too. */
 TOBI_FN void isph_walk_list_images(isph_walk *w)
 {
-    int (*f)[ISPH_FACES] = w->face;
+    int (*f)[ISPH_FACES] = w->face, meeting = 0;
     w->images = w->at = w->reflection = 0;
-    if (isph_walk_misses(w)) return;
     for (int p = 0; p < w->planes; p++) {
-        isph_normalise_plane(&w->plane[p]);
+        isph_find_reach(w, &w->plane[p]);
+        meeting += w->plane[p].meets;
+    }
+    for (int p = 0; p < w->planes; p++) {
+        if (w->plane[p].reaches || meeting > 1) isph_normalise_plane(&w->plane[p]);
+        if (!w->plane[p].reaches) continue;
         f[w->images][0] = p;
         f[w->images][1] = f[w->images][2] = -1;
         w->images++;
     }
-    for (int p = 0; p < w->planes; p++)
+    for (int p = 0; p < w->planes && meeting > 1; p++)
         for (int q = p + 1; q < w->planes; q++) {
             const double both = isph_planes_meet(w, p, q);
             if (!(both > 0)) continue;
@@ -165,21 +185,16 @@ TOBI_FN void isph_walk_begin(isph_walk *w, const isph_view *v, int64_t i)
     isph_walk_load_pair(w, i);
 }
 
-/* What sides leave of the normal; speed: of the plane along it, and its change. 0: next to nothing. */
-TOBI_FN int isph_plane_along(const isph_plane *p, const int sided[3], double normal[3], double speed[2])
+/* What sides leave of the normal; 0: next to nothing. */
+TOBI_FN int isph_plane_along(const isph_plane *p, const int sided[3], double normal[3])
 {
     double size = 0;
-    speed[0] = speed[1] = 0;
     for (int a = 0; a < 3; a++) {
         normal[a] = sided[a] ? 0 : p->normal[a];
         size += normal[a]*normal[a];
     }
     if (size < 0.9) return 0;
-    for (int a = 0; a < 3; a++) {
-        normal[a] /= sqrt(size);
-        speed[0] += p->velocity[a]*normal[a];
-        speed[1] += p->velocity_change[a]*normal[a];
-    }
+    for (int a = 0; a < 3; a++) normal[a] /= sqrt(size);
     return 1;
 }
 
@@ -191,7 +206,7 @@ TOBI_FN void isph_walk_add_image(isph_walk *w, const isph_plane *b, const int si
     isph_image_group *g = &w->group;
     const int k = w->used, sided[3] = { side[0] >= 0, side[1] >= 0, side[2] >= 0 };
     double x[3], normal[3], speed[2], own = 0, other = 0, r2 = 0;
-    if (!isph_plane_along(b, sided, normal, speed)) return;
+    if (!isph_plane_along(b, sided, normal)) return;
     for (int a = 0; a < 3; a++) {
         const double wall = side[a] == 1 ? v->size[a] : 0;
         x[a] = side[a] < 0 ? w->offset[a] : 2*((&v->position[w->i].x)[a] - wall) - w->offset[a];
@@ -204,6 +219,7 @@ TOBI_FN void isph_walk_add_image(isph_walk *w, const isph_plane *b, const int si
         r2 += x[a]*x[a];
     }
     if (r2 >= v->h*v->h) return;
+    isph_plane_speed(v, b, normal, speed);
     for (int a = 0; a < 3; a++) {
         g->x[a][k] = (float)x[a];
         g->displacement[a][k] = (float)(w->offset[a] - x[a]);
@@ -262,15 +278,15 @@ typedef struct isph_corner {
 /* 0: the particles do not stand before the plane, or it lies across a side. */
 TOBI_FN int isph_corner_add_face(isph_corner *c, const isph_walk *w, const isph_plane *p, const int side[3])
 {
-    double own = 0, other = 0, *n = c->normal[c->faces];
-    c->moved[c->faces] = c->change[c->faces] = 0;
+    double own = 0, other = 0, speed[2], *n = c->normal[c->faces];
     if (!isph_turn_along(p->normal, side, n)) return 0;
     for (int a = 0; a < 3; a++) {
         own += 0.5*(p->sum[a] + w->offset[a])*n[a];
         other += 0.5*(p->sum[a] - w->offset[a])*n[a];
-        c->moved[c->faces] += p->velocity[a]*n[a];
-        c->change[c->faces] += p->velocity_change[a]*n[a];
     }
+    isph_plane_speed(w->v, p, n, speed);
+    c->moved[c->faces] = speed[0];
+    c->change[c->faces] = speed[1];
     c->at[c->faces++] = own + other;
     c->weight *= p->weight;
     return own > 0 && other > 0;
@@ -419,7 +435,8 @@ TOBI_FN void isph_refresh_group(const isph_view *v, int64_t group)
         for (int a = 0; a < 3; a++) sided[a] = g->sided && v->group[group + 1].rest.sign[a][k] < 0;
         isph_find_plane(v, g->mirror[0][k], g->mirror[1][k], &p);
         isph_normalise_plane(&p);
-        isph_plane_along(&p, sided, normal, speed);
+        isph_plane_along(&p, sided, normal);
+        isph_plane_speed(v, &p, normal, speed);
         g->normal_velocity[k] = (float)speed[0];
         g->velocity_change[k] = (float)speed[1];
     }
