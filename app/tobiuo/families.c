@@ -194,8 +194,7 @@ static void write_lobovsky(const family_choice *c, FILE *out)
 static const char *object_kamra(const family_choice *c)
 {
     if (chosen(c, "water-height") > chosen(c, "height")) return above;
-    if (chosen(c, "water-length") >= 0.6) return "the water reaches the post, 0.6 m from the wall";
-    return floor(chosen(c, "post")) == chosen(c, "post") ? NULL : "the post is 0, 1 or 2";
+    return chosen(c, "water-length") >= 0.6 ? "the water reaches the post, 0.6 m from the wall" : NULL;
 }
 
 static void write_kamra(const family_choice *c, FILE *out)

@@ -147,10 +147,13 @@ static int set_option(family_choice *c, const char *name, const char *value)
         if (strcmp(o->name, name) != 0) continue;
         c->value[k] = strtod(value, &end);
         c->given[k] = 1;
-        if (end != value && !*end && c->value[k] >= o->min && c->value[k] <= o->max) return 0;
-        const int plain = strcmp(o->unit, "1") == 0 || !*o->unit;
-        complain("--%s: '%s' is not a number from %g to %g%s%s", name, value, o->min, o->max,
-                 plain ? "" : " ", plain ? "" : o->unit);
+        const int plain = strcmp(o->unit, "1") == 0;         /* a choice: 2-D or 3-D, which post */
+        const int whole = !plain || c->value[k] == floor(c->value[k]);
+        const int own = o->def == 0 && c->value[k] == 0;         /* as its sentence says */
+        if (end != value && !*end && whole && (own || c->value[k] >= o->min)
+            && c->value[k] <= o->max) return 0;
+        complain("--%s: '%s' is not a %snumber from %g to %g%s%s", name, value, plain ? "whole " : "",
+                 o->min, o->max, plain ? "" : " ", plain ? "" : o->unit);
         return EXIT_USAGE;
     }
     return complain_option(c->family, name);

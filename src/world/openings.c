@@ -513,6 +513,38 @@ static tobi_status follow(tobi_world *w, tobi_opening *o, tobi_error *err)
     return TOBI_OK;
 }
 
+static double measure_domain(const tobi_system *s)
+{
+    double size = 1;
+    for (int a = 0; a < s->box.dimension; a++) size *= s->box.size[a];
+    return size;
+}
+
+double tobi_openings_share(const tobi_system *s)
+{
+    int inlets = 0;
+    for (int k = 0; k < s->sim->opening_count; k++) {
+        if (s->sim->openings[k].outlet) return 0;
+        inlets++;
+    }
+    return inlets ? (double)s->particles.count*s->smoothing.volume/measure_domain(s) : 0;
+}
+
+/* How much more liquid than the whole domain holds is no rounding of a lattice. */
+static const double OVERFULL = 1.05;
+
+/* Liquid that inlets press into a domain without room and without an outlet has no pressure that is right:
+   methods crowd it, and then it is thrown about. */
+static tobi_status check_room(const tobi_world *w, tobi_error *err)
+{
+    const double fill = tobi_openings_share(&w->system[0]), room = measure_domain(&w->system[0]);
+    const char *unit = w->system[0].box.dimension == 2 ? "m2" : "m3";
+    if (fill < OVERFULL) return TOBI_OK;
+    return tobi_fail(err, TOBI_DIVERGED, "the inlets have overfilled the domain at t = %.9g s: %.4g %s of "
+                     "liquid, the domain has %.4g %s; stop the inlets before, add an outlet, or make the "
+                     "domain larger", w->sim.time, fill*room, unit, room, unit);
+}
+
 tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err)
 {
     tobi_system *s = &w->system[0];
@@ -525,7 +557,7 @@ tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err)
     s->info.mass_in = mass*(double)s->info.particles_in;
     s->info.mass_out = mass*(double)s->info.particles_out;
     s->info.fluid_particles = s->particles.count;
-    return TOBI_OK;
+    return check_room(w, err);
 }
 
 void tobi_openings_get(const tobi_world *w, double way[TOBI_OPENING_LIMIT])
@@ -553,11 +585,9 @@ tobi_status tobi_openings_note(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = &w->system[0];
     const char *outlet = find_free_outlet(&w->sim);
-    double room = 1;
     char text[300];
     if (w->sim.opening_count == 0 || (s->method->fills_pipes && !outlet)) return TOBI_OK;
-    for (int a = 0; a < s->box.dimension; a++) room *= s->box.size[a];
-    if ((double)s->particles.count*s->smoothing.volume < FULL*room) return TOBI_OK;
+    if ((double)s->particles.count*s->smoothing.volume < FULL*measure_domain(s)) return TOBI_OK;
     if (s->method->fills_pipes)
         snprintf(text, sizeof text, "where the pressure falls below 0 a full pipe gets cavities (mass_held "
                  "in history.csv falls); a pressure of the outlet '%s', density x speed^2 of the fastest "

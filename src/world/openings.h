@@ -11,6 +11,8 @@ tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err);
 int tobi_openings_cover(const tobi_simulation *s, const double x[3]);
 /* After a step: what has gone out is removed, what follows in the buffers is added. */
 tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err);
+/* Volume of the liquid over that of the domain, where inlets bring more and no outlet takes any; else 0. */
+double tobi_openings_share(const tobi_system *s);
 /* Rows that are wanted, in their order, into w->chosen. Errors: no memory. */
 typedef int (*tobi_opening_wants)(const tobi_system *s, const tobi_opening *o, int64_t i);
 tobi_status tobi_openings_choose(tobi_world *w, tobi_opening_wants wants, const tobi_opening *o,

@@ -242,6 +242,8 @@ static const char *name_cfl(const tobi_system *s, double *value)
 
 /* Spacings that the fastest particle goes while a body that has come back is still the likely cause. */
 static const double RETURN_REACH = 20;
+/* Share of the domain from which liquid that inlets bring has pockets without a free surface. */
+static const double CROWDED = 0.8;
 
 /* What may help besides a smaller step. Liquid in a body that comes back lands in a layer beside it at once,
    crowded as it never is else: pressure throws it. */
@@ -255,7 +257,10 @@ static void name_remedy(const tobi_system *s, double limit, char text[240])
                  "let a thick body come into liquid by a motion", b->name);
         return;
     }
-    if (s->sim->def.speed_limit <= 0)
+    if (tobi_openings_share(s) > CROWDED)
+        snprintf(text, 240, ". The inlets have all but filled the domain: stop them before, add an outlet, "
+                 "or make the domain larger");
+    else if (s->sim->def.speed_limit <= 0)
         snprintf(text, 240, ", or a speed_limit, where liquid is meant to be that fast");
 }
 

@@ -32,7 +32,10 @@ expect 0 "" run gated --quiet --until 0.01 --out out_gated
 expect 2 "there is no family 'slosing'; did you mean sloshing?" new slosing --spacing 1
 expect 2 "sloshing has no option --spcing; did you mean --spacing?" new sloshing --spcing 0.1
 expect 2 "--spacing wants a value" new sloshing --spacing
-expect 2 "--dimension: '4' is not a number from 2 to 3" new sloshing --dimension 4
+expect 2 "--dimension: '4' is not a whole number from 2 to 3" new sloshing --dimension 4
+expect 2 "--dimension: '2.5' is not a whole number from 2 to 3" new sloshing --dimension 2.5
+expect 2 "--support: '1' is not a number from 2 to 4 spacings" new sloshing --support 1
+expect 0 "" new static_pressure --support 0 own
 check "no blank at the end of a message" test "$(grep -c ' $' err.txt)" = 0
 expect 2 "--angle: '50' is not a number from -45 to 45 degrees" new sloshing --angle 50
 expect 2 "'isp' is no method of liquids; did you mean isph?" new sloshing --method isp
@@ -41,7 +44,7 @@ expect 1 "kamra is 3-D only" new kamra --dimension 2
 expect 1 "the water is higher than the tank" new static_pressure --depth 9
 expect 1 "the water is longer than the tank" new dam_break --water-length 1
 expect 1 "the water reaches the post" new kamra --water-length 0.7
-expect 1 "the post is 0, 1 or 2" new kamra --post 0.5
+expect 2 "--post: '0.5' is not a whole number from 0 to 2" new kamra --post 0.5
 expect 1 "the box does not fit" new wave_impact --box-at 3.2
 expect 1 "the box is wider" new wave_impact --box-width 2
 expect 1 "--wave-height is more than 0.78 of --depth: such waves break" new wave_tank --wave-height 0.3

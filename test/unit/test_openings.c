@@ -474,6 +474,27 @@ static void test_idle(void **state)
     unlink(path);
 }
 
+/* A domain that inlets have filled ends the run in words that name them, by every method: where the liquid
+   has no room any more, or before, where pockets without a free surface throw it. */
+static void test_overfull(void **state)
+{
+    static const char *const methods[] = { "dfsph", "wcsph", "isph", "eisph" };
+    int overfilled = 0;
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        tobi_world *w;
+        tobi_error err = { 0 };
+        must(make(methods[k], 1, IN "\"speed\": 6 }", "", "", &w, &err), &err);
+        assert_int_equal(tobi_world_advance(w, 1, NULL, &err), TOBI_DIVERGED);
+        overfilled += strstr(err.text, "the inlets have overfilled the domain at t = 0.")
+                   && strstr(err.text, "m2 of liquid, the domain has 0.2 m2");
+        if (!strstr(err.text, "overfilled") && !strstr(err.text, "The inlets have all but filled the domain"))
+            fail_msg("%s", err.text);
+        tobi_world_destroy(w);
+    }
+    assert_true(overfilled > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -483,6 +504,7 @@ int main(void)
         cmocka_unit_test(test_water_comes_back), cmocka_unit_test(test_rest),
         cmocka_unit_test(test_damaged), cmocka_unit_test(test_flow_in_time),
         cmocka_unit_test(test_wrong_tables), cmocka_unit_test(test_full_pipe),
+        cmocka_unit_test(test_overfull),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
