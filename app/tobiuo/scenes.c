@@ -6,6 +6,7 @@
 #include "app.h"
 #include <dirent.h>
 #include <errno.h>
+#include <ftw.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -160,6 +161,23 @@ static int copy_scene(const char *from, const char *to)
     return code;
 }
 
+static int remove_entry(const char *path, const struct stat *st, int type, struct FTW *place)
+{
+    (void)st, (void)type, (void)place;
+    return remove(path);
+}
+
+/* A copy is whole or not at all. The folder is not there before, so all in it is of this copy. */
+static int copy_whole(const char *from, const char *to)
+{
+    struct stat st;
+    if (lstat(to, &st) == 0) return complain("%s is there already; name another folder", to);
+    int code = copy_folder(from, to);
+    if (!code) code = copy_scene(from, to);
+    if (code) nftw(to, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+    return code;
+}
+
 typedef struct new_options { const char *name, *dir; } new_options;
 
 static error_t parse(int key, char *value, struct argp_state *state)
@@ -194,9 +212,7 @@ int tobiuo_new(int argc, char **argv)
         return EXIT_ERROR;
     }
     *strrchr(path, '/') = '\0';
-    int code = access(dir, F_OK) == 0 ? complain("%s is there already; name another folder", dir)
-                                      : copy_folder(path, dir);
-    if (!code) code = copy_scene(path, dir);
+    const int code = copy_whole(path, dir);
     if (!code) printf("%s is a copy of %s. Change %s/scene.json, then: tobiuo run %s\n", dir, name, dir, dir);
     free(path);
     return code;

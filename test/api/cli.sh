@@ -109,6 +109,9 @@ expect 1 "no shipped scene or family 'elephant'; \"tobiuo scenes\"" new elephant
 expect 0 "" new dam_break
 check "new makes a scene" test -s dam_break/scene.json -a ! -e dam_break/README.md
 expect 1 "dam_break is there already" new dam_break
+(trap '' XFSZ; ulimit -f 4; "$program" new apple_cut cut_short) 2> err.txt && bad "a copy without room succeeds"
+check "a copy without room tells the file" grep -q "cut_short/meshes/apple.obj: File too large" err.txt
+check "a copy without room leaves nothing" test ! -e cut_short
 for scene in twisted_knife floating_box apple_quarters; do      # with files from other folders
     expect 0 "" new $scene copy
     check "a copy of $scene stands alone" test -z "$(grep '"\.\./' copy/scene.json)"
