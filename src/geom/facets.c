@@ -85,7 +85,6 @@ static void give_owners(tobi_facets *f, const tobi_bvh *b)
             if (sine > FLAT && t < f->opposite[t][k]/3) f->owned[t] |= (uint8_t)(8 << k);
         }
     for (int64_t v = 0; v < f->vertex_count; v++) {
-        f->reach = fmax(f->reach, vec3_length(f->vertex[v]));
         if (b->corner_start[v] == b->corner_start[v + 1] || !is_corner(f, b, v)) continue;
         int32_t first = b->corner_list[b->corner_start[v]];
         f->owned[first/3] |= (uint8_t)(1 << first%3);
@@ -125,8 +124,16 @@ tobi_status tobi_facets_build(tobi_facets *f, const tobi_bvh *b, const double (*
     TOBI_TRY(allocate(f, err));
     list_rings(f, b);
     give_owners(f, b);
+    for (int64_t v = 0; v < f->vertex_count; v++) f->reach = fmax(f->reach, vec3_length(vertex[v]));
     find_ball(f, flat);
     return TOBI_OK;
+}
+
+void tobi_facets_follow(tobi_facets *f)
+{
+    memset(f->owned, 0, (size_t)f->triangle_count*sizeof *f->owned);
+    f->corner_count = 0;
+    give_owners(f, f->bvh);
 }
 
 void tobi_facets_free(tobi_facets *f)

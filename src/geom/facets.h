@@ -27,4 +27,7 @@ typedef struct tobi_facets {
    its section (2-D). Errors: TOBI_NO_MEMORY. */
 tobi_status tobi_facets_build(tobi_facets *f, const tobi_bvh *bvh, const double (*vertex)[3], int flat,
                               tobi_error *err);
+/* Corners and edges of a surface that has moved: the tree was refitted to other places of the vertices. Of
+   such a surface reach and ball are the caller's. */
+void tobi_facets_follow(tobi_facets *f);
 void tobi_facets_free(tobi_facets *f);

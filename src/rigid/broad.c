@@ -26,10 +26,11 @@ void tobi_broad_turn_back(const tobi_rigid *r, double x[3])
 
 static void box_body(tobi_broad *b, int k, const tobi_body *body, const tobi_shape *shape, double dt)
 {
-    const tobi_rigid *r = &body->rigid;
+    const tobi_rigid *r = &body->rigid, *axes = tobi_shape_axes(shape, body);
     tobi_broad_entry *e = &b->entries[k];
     double m[3][3], min[3], max[3];
     double speed = vec3_length(r->velocity) + vec3_length(r->angular_velocity)*shape->facets.reach;
+    speed += shape->flow_speed;
     b->margin[k] = REST_MARGIN*shape->thickness + 1.2*dt*(speed + 0.5*dt*vec3_length(r->pull));
     e->body = k;
     e->moves = r->kind != TOBI_PRESCRIBED;
@@ -37,9 +38,9 @@ static void box_body(tobi_broad *b, int k, const tobi_body *body, const tobi_sha
     if (shape->facets.ball > 0)
         for (int a = 0; a < 3; a++) min[a] = -(max[a] = shape->facets.ball);
     else tobi_bvh_box(shape->facets.bvh, min, max);
-    tobi_quaternion_matrix(r->orientation, m);
+    tobi_quaternion_matrix(axes->orientation, m);
     for (int a = 0; a < 3; a++) {
-        double middle = r->position[a], half = b->margin[k];
+        double middle = axes->position[a], half = b->margin[k];
         for (int i = 0; i < 3; i++) {
             middle += m[a][i]*0.5*(min[i] + max[i]);
             half += (shape->facets.ball > 0 ? a == i : fabs(m[a][i]))*0.5*(max[i] - min[i]);

@@ -3,106 +3,17 @@
 #include "rigid/dynamics.h"
 #include "geom/vec3.h"
 #include "rigid/dynamics_state.h"
-#include "rigid/overlap.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define PLASTIC 3.0          /* times gravity and step: slower approaches do not bounce                 */
 #define SAGITTA 0.3          /* of the least thickness: twice what a corner's arc may leave its chord     */
+#define FLOW 0.3             /* of the least thickness: what a change of shape may move a surface by    */
 #define LONGEST (1.0/60)     /* s: a step of small bodies                                               */
 #define FALL 0.1             /* sqrt(thickness/g), of the thinnest: one of large bodies                 */
 #define PLASTIC_LEAST 1e-3   /* m/s, the same without gravity                                           */
 
-/* --- start ------------------------------------------------------------------------------------- */
-
-/* Adds a line to the notes; lines that do not fit are left out. */
-static void note(char *notes, size_t room, const char *line)
-{
-    size_t used = strlen(notes);
-    if (used + strlen(line) + 2 < room) snprintf(notes + used, room - used, "%s\n", line);
-}
-
-/* How deep contact sees two bodies in each other, m; what it leaves alone does not count. */
-static double find_overlap(tobi_dynamics_state *d, int a, int b)
-{
-    double deepest = 0;
-    d->contacts.count = 0;
-    tobi_touch_bodies(&d->bodies[a], &d->shapes[a], &d->bodies[b], &d->shapes[b],
-                      (tobi_touch_look){ 0, 0 }, &d->contacts);
-    for (int64_t k = 0; k < d->contacts.count; k++)
-        if (-d->contacts.at[k].gap > 2*d->contacts.at[k].slop)
-            deepest = fmax(deepest, -d->contacts.at[k].gap);
-    return deepest;
-}
-
-/* Overlaps that contact does not see, or not as deep as they are, would last, and bodies fall through each
-   other. Between balls it sees all. */
-static tobi_status check_overlap(const tobi_dynamics_state *d, int a, int b, double seen, int *whole,
-                                 tobi_error *err)
-{
-    const tobi_shape *sa = &d->shapes[a], *sb = &d->shapes[b];
-    double least = TOBI_TOUCH_DEEPEST*fmin(sa->thickness, sb->thickness);
-    double deep = tobi_overlap_depth(&d->bodies[a], sa, &d->bodies[b], sb, least, whole);
-    if (seen >= 0.8*deep) return TOBI_OK;
-    return tobi_fail(err, TOBI_INVALID,
-                     "bodies '%s' and '%s' overlap by %.3g m at the start; contact can part these two from "
-                     "at most %.3g m: move one of them, or make them one mesh", d->bodies[a].name,
-                     d->bodies[b].name, deep, least);
-}
-
-static tobi_status note_overlaps(tobi_dynamics_state *d, char *notes, size_t room, tobi_error *err)
-{
-    enum { NAMED = 5 };
-    int found = 0, unsure = 0;
-    char line[300], whole[400];
-    TOBI_TRY(tobi_broad_find(&d->broad, d->bodies, d->shapes, d->count, 0, err));
-    for (int64_t k = 0; k < d->broad.pair_count; k++) {
-        int a = d->broad.pairs[k].a, b = d->broad.pairs[k].b, searched;
-        if (tobi_constraints_join(d->world.constraints, a, b)) continue;
-        double deep = find_overlap(d, a, b);
-        TOBI_TRY(check_overlap(d, a, b, deep, &searched, err));
-        if (!searched && ++unsure <= NAMED) {
-            snprintf(whole, sizeof whole, "'%s' lies so close to body '%s' over so large an area that not "
-                     "all places were searched for overlaps at the start", d->bodies[a].name,
-                     d->bodies[b].name);
-            note(notes, room, whole);
-        }
-        if (deep == 0 || ++found > NAMED) continue;
-        snprintf(line, sizeof line, "overlaps body '%s' by %.3g m at the start; contact pushes them apart",
-                 d->bodies[b].name, deep);
-        snprintf(whole, sizeof whole, "'%s' %s", d->bodies[a].name, line);
-        note(notes, room, whole);
-    }
-    if (found > NAMED) {
-        snprintf(line, sizeof line, "%d more pairs of bodies overlap at the start", found - NAMED);
-        note(notes, room, line);
-    }
-    if (unsure > NAMED) {
-        snprintf(line, sizeof line, "%d more pairs of bodies were not searched for overlaps to the end",
-                 unsure - NAMED);
-        note(notes, room, line);
-    }
-    d->contacts.count = 0;
-    return d->contacts.failed ? tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts") : TOBI_OK;
-}
-
-static void note_shapes(const tobi_dynamics_state *d, char *notes, size_t room)
-{
-    char line[300];
-    for (int k = 0; k < d->count; k++) {
-        const tobi_body *b = &d->bodies[k];
-        const tobi_facets *f = &d->shapes[k].facets;
-        if (!d->shapes[k].solid)
-            snprintf(line, sizeof line, "'%s' deforms: free bodies pass through it", b->name);
-        else if (f->ball > 0)
-            snprintf(line, sizeof line,
-                     "'%s' is taken for a ball of radius %.6g m in contact with bodies and sides; its faces "
-                     "lie up to %.2g m below", b->name, f->ball, f->ball_gap);
-        else continue;
-        note(notes, room, line);
-    }
-}
+/* --- start and end ----------------------------------------------------------------------------- */
 
 double tobi_rigid_step_limit(const tobi_dynamics_state *d)
 {
@@ -111,6 +22,8 @@ double tobi_rigid_step_limit(const tobi_dynamics_state *d)
         limit = fmax(limit, FALL*sqrt(d->thinnest/g));
     for (int k = 0; k < d->count; k++) {
         const tobi_rigid *r = &d->bodies[k].rigid;
+        const double flow = d->shapes[k].solid ? d->shapes[k].flow_speed : 0;
+        limit = fmin(limit, FLOW*d->thinnest/(flow + 1e-30));
         if (r->kind == TOBI_PRESCRIBED) continue;
         double turn = sqrt(SAGITTA*d->thinnest/d->shapes[k].facets.reach);
         limit = fmin(limit, fmin(turn, 0.5)/(vec3_length(r->angular_velocity) + 1e-9));
@@ -137,10 +50,11 @@ void tobi_rigid_free(tobi_dynamics_state *d)
 
 /* --- the kick ---------------------------------------------------------------------------------- */
 
-void tobi_rigid_update_lines(tobi_dynamics_state *d)
+void tobi_rigid_follow(tobi_dynamics_state *d)
 {
     for (int k = 0; k < d->world.line_count; k++) tobi_line_update(&d->world.lines[k], d->bodies);
     tobi_constraints_update_springs(d->world.constraints, d->bodies);
+    for (int k = 0; k < d->count; k++) tobi_shape_follow(&d->shapes[k], &d->bodies[k]);
 }
 
 static tobi_status run_control(tobi_body *b, double t, double dt, double force[3], double torque[3],
@@ -273,7 +187,7 @@ static void make_plane(const tobi_rigid_world *w, int plane, double friction, to
                   p->kind == TOBI_PLANE_SLIP     ? 0 : friction;
 }
 
-static void touch_planes(const tobi_dynamics_state *d, int k, double margin, tobi_touch_list *out)
+void tobi_dynamics_touch_planes(const tobi_dynamics_state *d, int k, double margin, tobi_touch_list *out)
 {
     double friction = d->bodies[k].rigid.friction;
     if (d->bodies[k].rigid.kind == TOBI_PRESCRIBED) return;
@@ -284,8 +198,10 @@ static void touch_planes(const tobi_dynamics_state *d, int k, double margin, tob
         else if (!make_side(&d->world, number, friction, &p)) continue;
         tobi_touch_plane(&d->bodies[k], &d->shapes[k], &p, number, margin, out);
         for (int64_t i = first; i < out->count; i++) {
-            out->at[i].a = k;
-            out->at[i].b = -1 - number;
+            tobi_touch *c = &out->at[i];
+            c->a = k;
+            c->b = -1 - number;
+            tobi_shape_add_flow(&d->shapes[k], &d->bodies[k], c->point, 1, c->flow);
         }
     }
 }
@@ -297,11 +213,14 @@ static void touch_pair(const tobi_dynamics_state *d, tobi_pair p, double dt, tob
     if (tobi_constraints_join(d->world.constraints, p.a, p.b)) return;
     tobi_touch_look look = { tobi_broad_margin(&d->broad, p.a) + tobi_broad_margin(&d->broad, p.b), 0 };
     vec3_sub(turn, d->bodies[p.a].rigid.angular_velocity, d->bodies[p.b].rigid.angular_velocity);
-    look.turn = 1.2*dt*vec3_length(turn);
+    look.turn = 1.2*dt*(vec3_length(turn) + (d->shapes[p.a].flow_turn + d->shapes[p.b].flow_turn));
     tobi_touch_bodies(&d->bodies[p.a], &d->shapes[p.a], &d->bodies[p.b], &d->shapes[p.b], look, out);
     for (int64_t i = first; i < out->count; i++) {
-        out->at[i].a = p.a;
-        out->at[i].b = p.b;
+        tobi_touch *c = &out->at[i];
+        c->a = p.a;
+        c->b = p.b;
+        tobi_shape_add_flow(&d->shapes[p.a], &d->bodies[p.a], c->point, 1, c->flow);
+        tobi_shape_add_flow(&d->shapes[p.b], &d->bodies[p.b], c->point, -1, c->flow);
     }
 }
 
@@ -346,7 +265,8 @@ static void touch_parts(const void *view, int64_t begin, int64_t end)
     for (int64_t t = begin; t < end; t++)
         while ((first = __atomic_fetch_add(v->next, 4, __ATOMIC_RELAXED)) < all)
             for (int64_t k = first; k < first + 4 && k < all; k++)
-                if (k < d->count) touch_planes(d, (int)k, tobi_broad_margin(&d->broad, (int)k), &d->part[t]);
+                if (k < d->count)
+                    tobi_dynamics_touch_planes(d, (int)k, tobi_broad_margin(&d->broad, (int)k), &d->part[t]);
                 else touch_pair(d, d->broad.pairs[k - d->count], v->dt, &d->part[t]);
 }
 
@@ -357,6 +277,10 @@ static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *
     d->contacts = swap;
     d->contacts.count = 0;
     TOBI_TRY(tobi_broad_find(&d->broad, d->bodies, d->shapes, d->count, dt, err));
+    for (int64_t k = 0; k < d->broad.pair_count; k++) {
+        tobi_shape_refresh(&d->shapes[d->broad.pairs[k].a]);
+        tobi_shape_refresh(&d->shapes[d->broad.pairs[k].b]);
+    }
     int64_t next = 0;
     const touching view = { d, dt, &next };
     for (int t = 0; t < d->world.threads; t++) d->part[t].count = 0;
@@ -409,7 +333,7 @@ static void hold_bodies(tobi_dynamics_state *d, double dt)
         for (int64_t k = 0; k < d->contacts.count; k++) {
             const tobi_touch *c = &d->contacts.at[k];
             tobi_rigid *a = &d->bodies[c->a].rigid, *b = c->b >= 0 ? &d->bodies[c->b].rigid : NULL;
-            double sum[2] = { c->gap, 0 };
+            double sum[2] = { c->gap + dt*vec3_dot(c->normal, c->flow), 0 };
             predict(a, c, 1, dt, sum);
             if (b) predict(b, c, -1, dt, sum);
             double size = vec3_length(a->pull) + (b ? vec3_length(b->pull) : 0);
@@ -447,7 +371,7 @@ static void stop_joint(tobi_body *b, double dt)
 tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_error *err)
 {
     double g = vec3_length(d->world.gravity);
-    tobi_rigid_update_lines(d);
+    tobi_rigid_follow(d);
     for (int k = 0; k < d->count; k++) {
         tobi_body_info *info = &d->bodies[k].info;
         memset(info->contact_force, 0, sizeof info->contact_force);
@@ -474,30 +398,11 @@ tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_er
     return TOBI_OK;
 }
 
-static void note_planes(tobi_dynamics_state *d, char *notes, size_t room)
-{
-    for (int k = 0; k < d->count; k++) {
-        char line[300];
-        double deepest = 0;
-        d->contacts.count = 0;
-        if (d->shapes[k].solid) touch_planes(d, k, 0, &d->contacts);
-        for (int64_t i = 0; i < d->contacts.count; i++)
-            if (-d->contacts.at[i].gap > 2*d->contacts.at[i].slop)
-                deepest = fmax(deepest, -d->contacts.at[i].gap);
-        if (deepest == 0) continue;
-        snprintf(line, sizeof line,
-                 "'%s' reaches %.3g m behind a side or plane at the start; contact pushes it back",
-                 d->bodies[k].name, deepest);
-        note(notes, room, line);
-    }
-    d->contacts.count = 0;
-}
-
 /* Before the first step, which has no kick behind it. */
 static tobi_status begin_pull(tobi_dynamics_state *d, tobi_error *err)
 {
     double dt = tobi_rigid_step_limit(d);
-    tobi_rigid_update_lines(d);
+    tobi_rigid_follow(d);
     tobi_solve_joints(d->bodies, d->world.constraints);
     for (int k = 0; k < d->count; k++) {
         tobi_rigid *r = &d->bodies[k].rigid;
@@ -536,9 +441,7 @@ tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_worl
         status = tobi_shape_make(&d->shapes[k], &bodies[k], world->dimension, err);
     for (int k = 0; k < count; k++)
         if (d->shapes[k].solid) d->thinnest = fmin(d->thinnest, d->shapes[k].thickness);
-    if (status == TOBI_OK) note_shapes(d, notes, room);
-    if (status == TOBI_OK) status = note_overlaps(d, notes, room, err);
-    if (status == TOBI_OK) note_planes(d, notes, room);
+    if (status == TOBI_OK) status = tobi_dynamics_note(d, notes, room, err);
     if (status == TOBI_OK) status = begin_pull(d, err);
     if (status == TOBI_OK) *out = d;
     else tobi_rigid_free(d);

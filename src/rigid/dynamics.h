@@ -40,8 +40,8 @@ void tobi_rigid_set_force(tobi_dynamics_state *state, int body, const double for
 /* The same gravity where the state is a checkpoint's, whose pull is of it already. */
 void tobi_rigid_restore_gravity(tobi_dynamics_state *state, const double gravity[3]);
 
-/* Loads of the lines where the bodies are, after a checkpoint has placed them. */
-void tobi_rigid_update_lines(tobi_dynamics_state *state);
+/* Loads of the lines and surfaces that deform where the bodies are, after a checkpoint has placed them. */
+void tobi_rigid_follow(tobi_dynamics_state *state);
 
 /* s: at most 1/60, a step in which gravity does little to the smallest body that moves and the fastest turns
    by half a radian, less where bodies are thin: contact looks ahead along straight lines. */

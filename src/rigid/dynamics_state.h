@@ -1,4 +1,4 @@
-/* The inside of what moves the bodies, shared by dynamics.c and warm.c. */
+/* The inside of what moves the bodies, shared by dynamics.c, notes.c and warm.c. */
 #pragma once
 #include "rigid/broad.h"
 #include "rigid/dynamics.h"
@@ -14,3 +14,8 @@ struct tobi_dynamics_state {
     tobi_touch_list *part;     /* [threads] */
     tobi_solver solver;
 };
+
+/* Notes for tobi_rigid_start. TOBI_INVALID in words where overlaps are deeper than contact sees. notes.c */
+tobi_status tobi_dynamics_note(tobi_dynamics_state *d, char *notes, size_t room, tobi_error *err);
+/* Adds the contacts of a body with sides and planes. */
+void tobi_dynamics_touch_planes(const tobi_dynamics_state *d, int body, double margin, tobi_touch_list *out);

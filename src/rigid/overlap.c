@@ -67,7 +67,7 @@ double tobi_overlap_depth(const tobi_body *a, const tobi_shape *sa, const tobi_b
     space stack[STACK];
     int top = 1, dropped = 0;
     *whole = 1;
-    tobi_rigid_between(&b->rigid, &a->rigid, s.turn, s.shift);
+    tobi_rigid_between(tobi_shape_axes(sb, b), tobi_shape_axes(sa, a), s.turn, s.shift);
     if (!find_common(&s, sa->facets.flat, &stack[0])) return 0;
     for (int looked = 0; top > 0 && looked < MOST_BOXES; looked++) {
         space box = stack[--top];

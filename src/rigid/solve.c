@@ -29,6 +29,7 @@ struct tobi_solve_row {
     double mass[3];                  /* kg, effective along the axes; 0 = nothing can move     */
     double sum[3];                   /* N s so far                                             */
     double was[3], way[3];           /* N s: before this sweep, and the direction of search    */
+    double flow[3];                  /* m/s, what changes of shape add to the speeds apart     */
     double target;                   /* m/s, the least speed apart                             */
     double friction;
     double pushed;                   /* of the displacements                                   */
@@ -89,7 +90,7 @@ static inline double part(const tobi_solve_row *r, int k, const double *a, const
 
 static inline double speed_along(const tobi_solve_row *r, int k)
 {
-    return part(r, k, r->a->speed, r->b->speed);
+    return part(r, k, r->a->speed, r->b->speed) + r->flow[k];
 }
 
 /* Out of line: few contacts have a body with a joint, and this is the inner loop of every sweep. */
@@ -207,6 +208,7 @@ static void prepare(tobi_solver *s, tobi_solve_row *r, tobi_touch *c, const tobi
         double sum = respond(r->a, r->axis[k], r->lever_a[k], r->spin_a[k], &r->along_a[k]) +
                      respond(r->b, r->axis[k], r->lever_b[k], r->spin_b[k], &r->along_b[k]);
         r->mass[k] = sum > 0 ? 1/sum : 0;
+        r->flow[k] = vec3_dot(r->axis[k], c->flow);
         r->jointed |= r->along_a[k] != 0 || r->along_b[k] != 0;
     }
 }

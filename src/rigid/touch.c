@@ -1,7 +1,8 @@
-/* Narrow phase. All of a pair is done in b's rest axes, where b's tree stands; a's corners, edges and faces
-   are brought there. A corner meets a face if its neighbours all lie behind it as seen from the face, and
-   two edges meet if the normal across both lies between the faces at either (the Gauss map of a Minkowski
-   sum); so no closest feature has to be guessed, and a stack of equal boxes has vertical normals only. */
+/* Narrow phase. All of a pair is done in the axes where b's tree stands, those of its rest, or the domain's
+   if b deforms; a's corners, edges and faces are brought there. A corner meets a face if its neighbours all
+   lie behind it as seen from the face, and two edges meet if the normal across both lies between the faces
+   at either (the Gauss map of a Minkowski sum); so no closest feature has to be guessed, and a stack of
+   equal boxes has vertical normals only. */
 #include "rigid/touch.h"
 #include "geom/vec3.h"
 #include <stdlib.h>
@@ -17,7 +18,7 @@
 enum { CORNER_FACE = 1, FACE_CORNER = 2, EDGE_EDGE = 3, BALL = 4, SIDE = 5, KIND_SHIFT = 60, HALF = 30 };
 
 /* In 2-D a body stands for its section, which must be the same at every height. */
-static tobi_status check_prism(const tobi_body *b, tobi_error *err)
+static int is_prism(const tobi_body *b)
 {
     for (int64_t t = 0; t < b->mesh.triangle_count; t++) {
         double u[3], w[3], n[3];
@@ -26,24 +27,28 @@ static tobi_status check_prism(const tobi_body *b, tobi_error *err)
         vec3_sub(w, b->mesh.vertices[c[2]], b->mesh.vertices[c[0]]);
         vec3_cross(n, u, w);
         vec3_normalize(n);
-        if (fabs(n[2]) < 1e-4 || fabs(n[2]) > 1 - 1e-4) continue;
-        return tobi_fail(err, TOBI_UNSUPPORTED,
-                         "body '%s': in a 2-D scene with bodies that move by forces, a mesh must be a prism "
-                         "or cylinder along z", b->name);
+        if (fabs(n[2]) >= 1e-4 && fabs(n[2]) <= 1 - 1e-4) return 0;
     }
-    return TOBI_OK;
+    return 1;
 }
 
 tobi_status tobi_shape_make(tobi_shape *s, tobi_body *b, int dimension, tobi_error *err)
 {
     memset(s, 0, sizeof *s);
     s->thickness = 2*fabs(b->rest.volume)/b->rest.area;
-    s->solid = !b->deforms;
-    if (!s->solid) return TOBI_OK;
-    if (dimension == 2) TOBI_TRY(check_prism(b, err));
-    TOBI_TRY(tobi_body_build_rest(b, err));
-    return tobi_facets_build(&s->facets, b->rest_bvh, (const double (*)[3])b->rest_vertex, dimension == 2,
-                             err);
+    s->deforms = b->deforms;
+    s->solid = dimension == 3 || is_prism(b);
+    if (!s->solid && !s->deforms)
+        return tobi_fail(err, TOBI_UNSUPPORTED,
+                         "body '%s': in a 2-D scene with bodies that move by forces, a mesh must be a prism "
+                         "or cylinder along z", b->name);
+    if (!s->deforms) TOBI_TRY(tobi_body_build_rest(b, err));
+    TOBI_TRY(tobi_facets_build(&s->facets, s->deforms ? b->bvh : b->rest_bvh,
+                               (const double (*)[3])(s->deforms ? b->vertex : b->rest_vertex),
+                               dimension == 2, err));
+    if (s->deforms) s->facets.ball = 0;
+    tobi_shape_follow(s, b);
+    return TOBI_OK;
 }
 
 /* Rigid change of axes: y = turn x + shift. */
@@ -454,7 +459,7 @@ void tobi_touch_thin(tobi_touch_list *out, int64_t first)
 
 static void touch_ordered(pair *p, const tobi_body *a, const tobi_body *b)
 {
-    set_frames(p, &a->rigid, &b->rigid);
+    set_frames(p, tobi_shape_axes(p->a, a), tobi_shape_axes(p->b, b));
     double thickness = fmin(p->a->thickness, p->b->thickness);
     p->deepest = TOBI_TOUCH_DEEPEST*thickness;
     p->around = fmax(p->margin, p->deepest);
@@ -484,7 +489,7 @@ void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body
         for (int i = 0; i < 3; i++) out->at[k].normal[i] *= -1;
 }
 
-/* Of a swimmer: its vertices as they are now. They touch nothing but planes. */
+/* Of a swimmer: all its vertices as they are now. */
 static void touch_vertices(const tobi_body *a, const tobi_shape *sa, const tobi_fixed_plane *plane,
                            int number, double margin, tobi_touch_list *out)
 {

@@ -13,6 +13,7 @@ typedef struct tobi_touch {
     double normal[3];            /* unit, pushes a away from b                                          */
     double gap;                  /* m, negative where the surfaces overlap                              */
     double slop;                 /* m, an overlap that is left alone                                    */
+    double flow[3];              /* m/s, of a against b: what changes of their shapes add there         */
     double friction;             /* 1, of a side or plane with the body                                 */
     double impulse;              /* N s along the normal, in this step                                  */
     double slide[3];             /* N s, of friction                                                    */
@@ -24,15 +25,30 @@ typedef struct tobi_touch_list {
     int failed;                  /* memory ran out */
 } tobi_touch_list;
 
-/* What contact knows of a body besides its pose. */
+/* What contact knows of a body besides its pose. The facets of a body that deforms are those of its
+   present vertices, and of the tree that follows them (decision 0104). */
 typedef struct tobi_shape {
     tobi_facets facets;
     double thickness;            /* m, 2 volume/area: a plate's thickness, a third of a cube's side     */
-    int solid;                   /* 0: nothing touches it, since it deforms                             */
+    int solid;                   /* 0: no body touches it                                               */
+    int deforms;
+    int is_fresh;                /* 0: corners and edges of the facets are those of an earlier shape    */
+    double flow_speed;           /* m/s, of the fastest vertex: what its change of shape adds           */
+    double flow_turn;            /* rad/s, at most: how fast that turns an edge of the mesh             */
 } tobi_shape;
 
-/* Of a body at rest; its facets are the caller's, with an error too. */
+/* Of a body at rest, or of one that deforms as it is at the start; its facets are the caller's, with an error
+   too. */
 tobi_status tobi_shape_make(tobi_shape *s, tobi_body *b, int dimension, tobi_error *err);
+/* Of a body that deforms and has moved: where it is and how fast it changes. Of others nothing. */
+void tobi_shape_follow(tobi_shape *s, const tobi_body *b);
+/* Then, for who looks at its corners and edges. */
+void tobi_shape_refresh(tobi_shape *s);
+/* The pose whose axes the facets are in: that of the body, or the domain's. */
+const tobi_rigid *tobi_shape_axes(const tobi_shape *s, const tobi_body *b);
+/* Adds `sign` times what the change of shape moves the surface with, nearest to x; m/s, x in the domain. */
+void tobi_shape_add_flow(const tobi_shape *s, const tobi_body *b, const double x[3], int sign,
+                         double flow[3]);
 
 #define TOBI_TOUCH_DEEPEST 0.3   /* of the lesser thickness: overlaps beyond this are seen as none     */
 

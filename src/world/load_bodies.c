@@ -185,7 +185,7 @@ tobi_status tobi_world_take_bodies(tobi_world *w, tobi_loaded_bodies *l, tobi_er
         if (absorb) memcpy(absorb, l->body[k].absorb, sizeof l->body[k].absorb);
     }
     tobi_absorb_restore(w);
-    if (w->dynamics) tobi_rigid_update_lines(w->dynamics);
+    if (w->dynamics) tobi_rigid_follow(w->dynamics);
     tobi_constraints_report(&w->sim.constraints, w->sim.bodies, 0);
     return TOBI_OK;
 }
