@@ -90,6 +90,33 @@ static int any_point(double *const row[TOBI_POINT_ROWS], int64_t begin, int64_t 
     return 0;
 }
 
+/* x, y, z of four places that follow one another. */
+static inline void load_places(const tobi_double3 *place, four out[3])
+{
+    const double *p = &place->x;
+    const four a = load(p), b = load(p + 4), c = load(p + 8);
+    const four low = __builtin_shufflevector(a, b, 0, 3, 6, 5);
+    out[0] = __builtin_shufflevector(low, c, 0, 1, 2, 5);
+    out[1] = __builtin_shufflevector(__builtin_shufflevector(a, b, 1, 4, 7, 7), c, 0, 1, 2, 6);
+    out[2] = __builtin_shufflevector(__builtin_shufflevector(a, b, 2, 5, 2, 2), c, 0, 1, 4, 7);
+}
+
+static void list_places(const tobi_double3 *place, int64_t begin, int64_t end, const double x[3],
+                        const double normal[3], int deep, double reach2, tobi_facing_points *list)
+{
+    const double from[3] = {x[0], x[1], x[2]}, n[3] = {normal[0], normal[1], normal[2]};
+    for (int64_t k = begin; k < end; k += 4) {
+        four r[3];
+        load_places(place + k, r);
+        for (int a = 0; a < 3; a++) r[a] = r[a] - from[a];
+        if (!deep) r[2] = (four){0, 0, 0, 0};
+        const four height = r[0]*n[0] + r[1]*n[1] + r[2]*n[2], square = r[0]*r[0] + r[1]*r[1] + r[2]*r[2];
+        unsigned m = bits((square < reach2) & (height > 0));
+        if (end - k < 4) m &= (1u << (end - k)) - 1;
+        if (m) append(list, k, m, square, height);
+    }
+}
+
 /* Of each listed point, what divisions make: several at once, before the sums. */
 typedef struct shares {
     double area_weight[TOBI_FACING_MOST];
@@ -165,4 +192,4 @@ static void sum_points(const tobi_look_view *view, const tobi_facing_points *q, 
     e->wall_flux = flux, e->share = share, e->steady = steady, e->height = height, e->drag = drag;
 }
 
-const tobi_look_loops JOIN(tobi_look_loops, TOBI_ISA) = {list_points, any_point, sum_points};
+const tobi_look_loops JOIN(tobi_look_loops, TOBI_ISA) = {list_points, any_point, list_places, sum_points};

@@ -25,53 +25,19 @@ typedef struct body_points {
 
 static const tobi_body *body_of(const body_points *q) { return &q->s->sim->bodies[q->body]; }
 
-/* Particles that a point faces within reach: so many at a time. */
-enum { MOST = 128 };
-typedef struct seen_particles {
-    int count;
-    double at[MOST][3];              /* m, from the point                                           */
-    double square[MOST], height[MOST], weight[MOST];
-    double share[MOST];              /* 1: density over that of the first fluid                     */
-} seen_particles;
-
-/* Lists particles, without a branch, until there is no room; returns the first that was not looked at. */
-static int64_t list_particles(const body_points *q, int64_t point, int64_t i, int64_t end, seen_particles *l)
+/* Particles before point k and the pressure that liquid at rest has there beyond theirs. Empties the list. */
+static void add_particles(const body_points *q, int64_t k, const double pull[3], tobi_facing_points *l,
+                          isph_point *sum)
 {
-    const tobi_body *b = body_of(q);
-    const double h2 = q->s->smoothing.h*q->s->smoothing.h;
-    const double from[3] = { b->point[point][0], b->point[point][1], b->point[point][2] },
-                 normal[3] = { b->normal[point][0], b->normal[point][1], b->normal[point][2] };
-    const int deep = q->v->dimension == 3;
-    int count = l->count;
-    if (end - i > MOST - count) end = i + MOST - count;
-    for (; i < end; i++) {
-        const tobi_double3 *at = &q->v->position[i];
-        double *x = l->at[count];
-        x[0] = at->x - from[0];
-        x[1] = at->y - from[1];
-        x[2] = deep ? at->z - from[2] : 0;
-        const double square = vec3_dot(x, x), height = vec3_dot(x, normal);
-        l->square[count] = square;
-        l->height[count] = height;
-        l->share[count] = q->share[q->v->fluid[i]];
-        count += (height > 0) & (square < h2);
-    }
-    l->count = count;
-    return end;
-}
-
-/* Particles before the point, and the pressure that liquid at rest has there beyond theirs. Empties the
-   list. */
-static void add_particles(const body_points *q, const double pull[3], seen_particles *l, isph_point *sum)
-{
-    const tobi_smoothing_constants *c = &q->s->smoothing;
     const isph_view *v = q->v;
-    tobi_smoothing_weigh(c->shape, c->dimension, c->h, l->count, l->square, l->weight);
+    const double *from = body_of(q)->point[k];
+    tobi_facing_weigh(l, &q->s->smoothing);
     for (int i = 0; i < l->count; i++) {
-        const double w = q->scale*l->weight[i], heavy = w*l->share[i];
+        const double *at = &v->position[l->index[i]].x;
+        const double w = q->scale*l->weight[i], heavy = w*q->share[v->fluid[l->index[i]]];
         sum->weight += w;
         sum->distance += heavy*l->height[i];
-        for (int a = 0; a < v->dimension; a++) sum->hydrostatic -= heavy*v->density*pull[a]*l->at[i][a];
+        for (int a = 0; a < v->dimension; a++) sum->hydrostatic -= heavy*v->density*pull[a]*(at[a] - from[a]);
     }
     l->count = 0;
 }
@@ -92,24 +58,29 @@ static int find_row(const tobi_cells *c, const double x[3], int y, int z, int64_
 static isph_point sum_particles(const body_points *q, int64_t k)
 {
     const isph_view *v = q->v;
+    const tobi_body *b = body_of(q);
+    const tobi_look_loops *loops = sph_of(q->s)->links.loops;
     const int deep = v->dimension == 3;
+    const double h = q->s->smoothing.h;
     double x[3] = { 0 }, pull[3] = { 0 };
     isph_point sum = { 0 };
-    seen_particles list;
+    tobi_facing_points list;
     list.count = 0;
-    for (int a = 0; a < v->dimension; a++) x[a] = body_of(q)->point[k][a];
-    if (v->acceleration.acts) tobi_acceleration_at(&v->acceleration, body_of(q)->point[k], pull);
+    for (int a = 0; a < v->dimension; a++) x[a] = b->point[k][a];
+    if (v->acceleration.acts) tobi_acceleration_at(&v->acceleration, b->point[k], pull);
     for (int a = 0; a < 3; a++) pull[a] += v->gravity[a];
     for (int z = -deep; z <= deep; z++)
         for (int y = -1; y <= 1; y++) {
             int64_t i, end;
             if (!find_row(&q->s->cells, x, y, z, &i, &end)) continue;
             while (i < end) {
-                i = list_particles(q, k, i, end, &list);
-                if (list.count == MOST) add_particles(q, pull, &list, &sum);
+                const int64_t room = i + TOBI_FACING_MOST - list.count, stop = end < room ? end : room;
+                loops->list_places(v->position, i, stop, b->point[k], b->normal[k], deep, h*h, &list);
+                i = stop;
+                if (list.count == TOBI_FACING_MOST) add_particles(q, k, pull, &list, &sum);
             }
         }
-    add_particles(q, pull, &list, &sum);
+    add_particles(q, k, pull, &list, &sum);
     return sum;
 }
 

@@ -20,6 +20,10 @@ typedef struct tobi_look_loops {
     /* Whether there is any. */
     int (*any)(double *const row[TOBI_POINT_ROWS], int64_t begin, int64_t end, const double x[3],
                double reach2);
+    /* Adds those of the places [begin, end) to the list that x faces, by its normal, and that are nearer: the
+       other way round. deep: 0 in 2-D. Reads up to three places beyond the end. */
+    void (*list_places)(const tobi_double3 *place, int64_t begin, int64_t end, const double x[3],
+                        const double normal[3], int deep, double reach2, tobi_facing_points *list);
     /* Adds the listed points, by their weights, to link and entry, and marks them as wet and covered. */
     void (*sum)(const tobi_look_view *v, const tobi_facing_points *list, tobi_boundary_link *link,
                 tobi_boundary_entry *entry);
