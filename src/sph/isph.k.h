@@ -423,7 +423,7 @@ TOBI_FN void isph_body_force(const isph_view *v, int64_t k, double *totals)
     for (int a = 0; a < 6; a++) totals[a] += v->coupling[k].f[a]*p;
 }
 
-/* The row of the accelerations that bodies answer with, eq. (15). */
+/* The row of the accelerations that bodies answer with, eq. (15b). */
 TOBI_FN void isph_add_answer(const isph_view *v, int64_t i, double *totals)
 {
     double sum = 0;

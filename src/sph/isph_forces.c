@@ -1,7 +1,8 @@
 /* What the pressure of isph does to bodies, and how those that move by forces answer it within the solve. The
    force is linear in the pressures of the particles: its coefficients, the couplings, are found once per
    step. The answer spreads the flux of a surface that moves by the same coefficients, which keeps the matrix
-   symmetric (decision 49). Drawback: that flux and the one of the mirrors are the same on average only. */
+   symmetric (decisions 49, 102). Drawback: that flux and the one of the mirrors are the same on average
+   only. */
 #include "sph/boundary.h"
 #include "sph/isph_forces.h"
 #include "sph/state.h"
@@ -392,15 +393,6 @@ static void join(isph_solver *m, tobi_system *s)
                sizeof m->body->explicit_change);
 }
 
-void isph_forces_predict(isph_solver *m, tobi_system *s)
-{
-    if (!m->coupled) return;
-    tobi_boundary_known_forces(s, 1);
-    for (int k = 0; k < s->sim->body_count; k++) predict(m, s, k);
-    join(m, s);
-    isph_bodies_accelerate(m, s, 1);
-}
-
 /* Accelerations of the bodies by the pressures of the particles, into links.answer. */
 static void answer(isph_solver *m, tobi_system *s, const double *pressure)
 {
@@ -413,13 +405,51 @@ static void answer(isph_solver *m, tobi_system *s, const double *pressure)
     tobi_couple_obey(s, 0);
 }
 
+static void take_last_pressure(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const isph_view *v = view;
+    (void)totals;
+    for (int64_t i = begin; i < end; i++)
+        v->solution[i] = v->held && v->held[i].w != 0 ? 0 : v->pressure[i];
+}
+
+/* Mirrors move as the pressure of the last step lets the bodies move. The solve answers the rest, so that the
+   couplings spread little of the flux (decision 102). */
+void isph_forces_predict(isph_solver *m, tobi_system *s)
+{
+    if (!m->coupled) return;
+    tobi_boundary_known_forces(s, 1);
+    for (int k = 0; k < s->sim->body_count; k++) predict(m, s, k);
+    join(m, s);
+    isph_bodies_accelerate(m, s, 1);
+    tobi_launch(m->exec, TOBI_HOST(take_last_pressure, 0, 0), &m->view, 0, m->view.count, NULL);
+    answer(m, s, m->view.solution);
+    for (int k = 0; k < s->sim->body_count; k++)
+        memcpy(m->body[k].expected, sph_of(s)->links.answer[k], sizeof m->body->expected);
+    isph_bodies_accelerate(m, s, s->dt);
+}
+
+static void add_spread(isph_solver *m, double *rows)
+{
+    isph_view v = m->view;
+    v.out = rows;
+    tobi_launch(m->exec, m->kernel->isph_add_answer, &v, 0, v.count, NULL);
+}
+
+void isph_forces_add_expected(isph_solver *m)
+{
+    const tobi_system *s = m->system;
+    if (!m->coupled) return;
+    for (int k = 0; k < s->sim->body_count; k++)
+        memcpy(sph_of(s)->links.answer[k], m->body[k].expected, sizeof m->body->expected);
+    add_spread(m, m->view.source);
+}
+
 void isph_forces_add_answer(isph_solver *m, double *product, const double *pressure)
 {
     if (!m->coupled) return;
     answer(m, m->system, pressure);
-    isph_view v = m->view;
-    v.out = product;
-    tobi_launch(m->exec, m->kernel->isph_add_answer, &v, 0, v.count, NULL);
+    add_spread(m, product);
 }
 
 /* totals[0]: trace of what a body adds to the equation, over its diagonal. */
@@ -452,11 +482,17 @@ double isph_forces_answer_bound(isph_solver *m)
     return most;
 }
 
+/* Mirrors have the expected part already. */
 void isph_forces_correct(isph_solver *m, tobi_system *s)
 {
     if (!m->coupled) return;
     answer(m, s, m->view.solution);
+    double (*now)[6] = sph_of(s)->links.answer;
+    for (int k = 0; k < s->sim->body_count; k++)
+        for (int a = 0; a < 6; a++) now[k][a] -= m->body[k].expected[a];
     isph_bodies_accelerate(m, s, s->dt);
+    for (int k = 0; k < s->sim->body_count; k++)
+        for (int a = 0; a < 6; a++) now[k][a] += m->body[k].expected[a];
 }
 
 /* Less what the water at the surface of a body takes that moves by forces: eq. (14). */

@@ -5,10 +5,12 @@
 
 /* How pressures of particles act on bodies, eq. (12) and (13). After isph_bodies_find_mirrors. */
 tobi_status isph_forces_find_coupling(isph_solver *m, tobi_system *s, tobi_error *err);
-/* Bodies that move by forces: their mirrors get the velocities that all but the pressure makes. After
-   friction is known, before the solve. */
+/* Bodies that move by forces: their mirrors get the velocities that the pressure of the last step would make.
+   After friction is known, before the solve. Overwrites view.solution. */
 void isph_forces_predict(isph_solver *m, tobi_system *s);
-/* product += how they answer pressures, Pa, one per particle, eq. (15). */
+/* Into the sources, when rows are made: of the answer only what differs from that is new. */
+void isph_forces_add_expected(isph_solver *m);
+/* product += how they answer pressures, Pa, one per particle, eq. (15b). */
 void isph_forces_add_answer(isph_solver *m, double *product, const double *pressure);
 /* At least the largest eigenvalue of what they add to the equation, over its diagonal; 0 without them. */
 double isph_forces_answer_bound(isph_solver *m);

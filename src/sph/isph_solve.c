@@ -265,6 +265,7 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
     m->system = s;
     m->view.gravity_dt = (float)m->view.dt;
     tobi_launch(m->exec, m->kernel->isph_rows, &m->view, 0, n, t);
+    isph_forces_add_expected(m);
     if (m->view.held) tobi_launch(m->exec, TOBI_HOST(take_held, 0, 0), &m->view, 0, n, NULL);
     m->view.source_mean = t[1]/(double)n;
     if (!m->view.open && t[0] > 0) tobi_launch(m->exec, m->kernel->isph_balance, &m->view, 0, n, NULL);

@@ -34,7 +34,7 @@ static double launch(isph_solver *m, tobi_kernel k)
     return t[0];
 }
 
-/* The operator of a solve: the liquid, and bodies that move by forces (eq. 15 of docs/theory/isph.md). */
+/* The operator of a solve: the liquid, and bodies that move by forces (eq. 15b of docs/theory/isph.md). */
 static void multiply(isph_solver *m, double *out, const double *in)
 {
     m->view.in = in;
