@@ -5,11 +5,12 @@
 #include <math.h>
 #include <string.h>
 
-#define SPACING(d) { "spacing", "m", d, 1e-7, 1e5, "particle spacing" }
-#define UNTIL(t) { "until", "s", t, 1e-6, 1e5, "simulated time at which the run ends" }
-#define LENGTH(name_, def_, doc_) { name_, "m", def_, 1e-6, 1e5, doc_ }
+#define SPACING(d) { "spacing", "m", d, 1e-7, 1e5, "particle spacing", 0 }
+#define UNTIL(t) { "until", "s", t, 1e-6, 1e5, "simulated time at which the run ends", 0 }
+#define LENGTH(name_, def_, doc_) { name_, "m", def_, 1e-6, 1e5, doc_, 0 }
+#define ACROSS(name_, def_, doc_) { name_, "m", def_, 1e-6, 1e5, doc_, 1 }
 #define TANK(l, w, h) \
-    LENGTH("length", l, "of the tank, along x"), LENGTH("width", w, "of the tank, along y"), \
+    LENGTH("length", l, "of the tank, along x"), ACROSS("width", w, "of the tank, along y"), \
     LENGTH("height", h, "of the tank, along z")
 
 double chosen(const family_choice *c, const char *option)
@@ -119,15 +120,15 @@ static const family_option dam_options[] = {
 static const family_option lobovsky_options[] = {
     SPACING(0.015), UNTIL(1.1), LENGTH("water-height", 0.3, "0.3 or 0.6 in the experiment"),
     LENGTH("height", 0.6, "of the computed air and water"),
-    { "gate-speed", "m/s", 0, 0, 100, "of a gate drawn up at time 0; 0: the water is let go at once" },
+    { "gate-speed", "m/s", 0, 0, 100, "of a gate drawn up at time 0; 0: the water is let go at once", 0 },
     { 0 } };
 static const family_option kamra_options[] = {
     SPACING(0.015), UNTIL(1), COLUMN(0.2, 0.2), LENGTH("height", 0.6, "of the tank"),
-    { "post", "1", 1, 0, 2, "1: square, 0.05 m wide; 2: round, 0.05 m across; 0: none" }, { 0 } };
+    { "post", "1", 1, 0, 2, "1: square, 0.05 m wide; 2: round, 0.05 m across; 0: none", 0 }, { 0 } };
 static const family_option impact_options[] = {
     SPACING(0.04), UNTIL(1.5), COLUMN(1.228, 0.55), TANK(3.22, 1, 1),
     LENGTH("box-length", 0.16, "of the box that is hit, along x"),
-    LENGTH("box-width", 0.4, "of the box, along y"),
+    ACROSS("box-width", 0.4, "of the box, along y"),
     LENGTH("box-height", 0.16, "of the box"), LENGTH("box-at", 2.4, "where the box begins, along x"), { 0 } };
 
 static const char *object_dam(const family_choice *c)
@@ -257,8 +258,8 @@ static void write_impact(const family_choice *c, FILE *out)
 
 static const family_option slosh_options[] = {
     SPACING(0.02), UNTIL(4), TANK(0.9, 0.1, 0.5), LENGTH("depth", 0.2, "of the water"),
-    { "angle", "degrees", 4, -45, 45, "of the tank about y" },
-    { "period", "s", 0, 0, 1e5, "of its turns to and fro; 0: tilted at once, and kept" }, { 0 } };
+    { "angle", "degrees", 4, -45, 45, "of the tank about y", 0 },
+    { "period", "s", 0, 0, 1e5, "of its turns to and fro; 0: tilted at once, and kept", 0 }, { 0 } };
 
 /* The turn to and fro as a frame: the tank stands still, gravity and inertia turn. */
 static void put_frame(const family_choice *c, FILE *out, const double size[3])
@@ -291,7 +292,7 @@ static void write_slosh(const family_choice *c, FILE *out)
 static const family_option wave_options[] = {
     SPACING(0.02), UNTIL(6), TANK(4, 0.1, 0.5), LENGTH("depth", 0.3, "of the water"),
     LENGTH("wave-height", 0.06, "from trough to crest; of a solitary wave above the still water"),
-    { "period", "s", 1.2, 0, 1e5, "of regular waves; 0: one solitary wave" },
+    { "period", "s", 1.2, 0, 1e5, "of regular waves; 0: one solitary wave", 0 },
     LENGTH("maker-at", 0.3, "where the water begins: the face of the piston at rest"), { 0 } };
 
 static const char *object_wave(const family_choice *c)
@@ -333,7 +334,7 @@ static void write_wave(const family_choice *c, FILE *out)
 static const family_option hose_options[] = {
     SPACING(0.005), UNTIL(1), TANK(0.06, 0.06, 0.12), LENGTH("depth", 0.015, "of the water at the start"),
     LENGTH("diameter", 0.02, "of the hose"),
-    { "speed", "m/s", 0.5, 1e-6, 1e3, "of the water in the hose" }, { 0 } };
+    { "speed", "m/s", 0.5, 1e-6, 1e3, "of the water in the hose", 0 }, { 0 } };
 
 static const char *object_hose(const family_choice *c)
 {

@@ -7,6 +7,7 @@ typedef struct family_option {
     const char *name, *unit;
     double def, min, max;
     const char *doc;
+    int across;                        /* 1: along y of the tank, which a 2-D scene does not have */
 } family_option;
 
 enum { FAMILY_OPTIONS = 24 };

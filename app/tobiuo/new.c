@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 static const family_option common[] = {
-    { "support", "spacings", 0, 2, 4, "support radius of the kernel (CSML); 0: the method's own" },
-    { "dimension", "1", 3, 2, 3, "2 or 3" },
+    { "support", "spacings", 0, 2, 4, "support radius of the kernel (CSML); 0: the method's own", 0 },
+    { "dimension", "1", 3, 2, 3, "2 or 3", 0 },
     { 0 } };
 
 const family_option *family_common(void) { return common; }
@@ -159,6 +159,18 @@ static int set_option(family_choice *c, const char *name, const char *value)
     return complain_option(c->family, name);
 }
 
+/* A 2-D scene would take the option and never use it. */
+static int object_across(const family_choice *c)
+{
+    const family_option *o;
+    for (int k = 0; c->dimension == 2 && (o = family_option_at(c->family, k)); k++) {
+        if (!o->across || !c->given[k]) continue;
+        complain("--%s: a 2-D scene has no width; leave it out, or set --dimension 3", o->name);
+        return EXIT_USAGE;
+    }
+    return 0;
+}
+
 /* "--name value" or "--name=value" at argv[*at]. */
 static int read_option(family_choice *c, int argc, char **argv, int *at)
 {
@@ -190,7 +202,7 @@ static int read_arguments(family_choice *c, int argc, char **argv, const char **
         else if (k != name) *dir = argv[k];
     }
     c->dimension = (int)chosen(c, "dimension");
-    return code;
+    return code ? code : object_across(c);
 }
 
 /* --- the scene ----------------------------------------------------------------------------- */

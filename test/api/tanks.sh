@@ -58,6 +58,9 @@ for more in "sloshing --period 1.4" "sloshing --dimension 2 --period 1.4" "wave_
 done
 expect 1 "the water reaches the box" new wave_impact --water-length 2.5
 expect 1 "static_pressure: spacing: is 10 m, the domain has only 0.2 m in x" new static_pressure --spacing 10
+expect 2 "--width: a 2-D scene has no width; leave it out" new dam_break --dimension 2 --width 0.3 flat_wide
+expect 2 "--box-width: a 2-D scene has no width" new wave_impact --box-width=0.3 --dimension=2 flat_wide
+check "no scene is written of an option that is not used" test ! -e flat_wide
 for family in $families; do
     expect 1 "no scene is written; given: --spacing 10" new $family --spacing 10 absurd
     expect 2 "--spacing: 'nan' is not a number from 1e-07 to 100000 m" new $family --spacing nan absurd
