@@ -92,8 +92,8 @@ static int start(const sweep *s, int run, sweep_state state, job *j)
     return failed ? complain("the program does not start itself: %s", strerror(failed)) : 0;
 }
 
-/* The last line that a run has said. */
-static void tell_failure(const sweep *s, const char *name)
+/* The last line that a run has said. One that failed in silence had no room for its log, or was killed. */
+static void tell_failure(const sweep *s, const char *name, int state)
 {
     char *path = sweep_path(s, "%s.log", name), line[400] = "", last[400] = "";
     FILE *file = fopen(path, "r");
@@ -101,7 +101,10 @@ static void tell_failure(const sweep *s, const char *name)
         if (line[0] != '\n') strcpy(last, line);
     if (file) fclose(file);
     last[strcspn(last, "\n")] = '\0';
-    complain("%s: %s", name, last[0] ? last : "the run ended without a word");
+    if (last[0]) complain("%s: %s", name, last);
+    else if (WIFSIGNALED(state)) complain("%s: the run was ended by a signal: %s", name,
+                                          strsignal(WTERMSIG(state)));
+    else complain("%s: the run failed, and could not write the reason to %s; is the disk full?", name, path);
     free(path);
 }
 
@@ -111,7 +114,7 @@ static int finish(const sweep *s, const job *j, int state, int done, int todo)
     const int code = WIFEXITED(state) ? WEXITSTATUS(state) : EXIT_ERROR;
     if (code == 0)
         printf("[%d/%d] %s: done in %s\n", done, todo, name, duration_text(wall_clock() - j->begun, text));
-    else if (code != EXIT_INTERRUPTED) tell_failure(s, name);
+    else if (code != EXIT_INTERRUPTED) tell_failure(s, name, state);
     fflush(stdout);
     free(name);
     return code;

@@ -130,21 +130,24 @@ static int width_of(const grid *g, int column)
 
 static int write_grid(const sweep *s, const grid *g, const char *file, int aligned)
 {
-    char *path = sweep_path(s, "%s", file);
-    FILE *out = fopen(path, "w");
-    int code = out ? 0 : complain("cannot write %s: %s", path, strerror(errno));
-    for (int row = 0; out && row < g->rows; row++) {
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) exit(complain("out of memory"));
+    for (int row = 0; row < g->rows; row++) {
         for (int k = 0; k < g->columns; k++) {
-            const char *text = g->cell[row*g->columns + k];
-            if (aligned) fprintf(out, "%s%*s", k ? "  " : "", width_of(g, k), text);
+            const char *cell = g->cell[row*g->columns + k];
+            if (aligned) fprintf(out, "%s%*s", k ? "  " : "", width_of(g, k), cell);
             else if (k) fputc(',', out);
-            if (!aligned) put_csv_cell(out, text);
+            if (!aligned) put_csv_cell(out, cell);
         }
         fputc('\n', out);
     }
-    if (out && (ferror(out) || fclose(out) != 0))
-        code = complain("cannot write %s: %s", path, strerror(errno));
+    if (fclose(out) != 0) exit(complain("out of memory"));
+    char *path = clear_place(s->dir, file);
+    const int code = path ? write_new(path, text, size) : EXIT_ERROR;
     free(path);
+    free(text);
     return code;
 }
 

@@ -98,6 +98,10 @@ check "an array job" grep -q "^#SBATCH --array=0-3" s/sweep.slurm
 check "that is a shell script" sh -n s/sweep.slurm
 check "and runs one of them" env SLURM_ARRAY_TASK_ID=1 sh s/sweep.slurm
 check "only that one" test -s s/spacing=0.02_method=wcsph/summary.json -a ! -e s/spacing=0.02_method=dfsph
+(trap '' XFSZ; ulimit -f 0; exec "$program" sweep $flat --set spacing=0.02,0.025 --out narrow) 2>&1 | cat > out.txt
+check "a sweep without room: said so" grep -q "could not write the reason to narrow/spacing=0.02.log" out.txt
+check "a sweep without room: no empty table" test -d narrow -a ! -e narrow/sweep.csv
+rm -rf narrow
 many=$(seq -s, 0.01 0.00001 0.02)
 expect 0 "" sweep $flat --set time_step_max=$many --out many --slurm
 check "an array job of many runs" grep -q "^#SBATCH --array=0-1000" many/sweep.slurm
