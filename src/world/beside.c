@@ -38,8 +38,9 @@ static tobi_status check_bodies(const tobi_world *w, tobi_error *err)
             if (low[a] < spacing && high[a] > size - spacing) continue;
             return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s' reaches from %c = %.6g to %.6g m; bodies do "
                              "not go through periodic sides, here at %g and %g m, unless they reach from "
-                             "side to side",
-                             b->name, "xyz"[a], low[a] + lower, high[a] + lower, lower, lower + size);
+                             "side to side; keep it there with \"locked\": \"%c\", or lengthen the domain",
+                             b->name, "xyz"[a], low[a] + lower, high[a] + lower, lower, lower + size,
+                             "xyz"[a]);
         }
     }
     return TOBI_OK;

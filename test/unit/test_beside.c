@@ -104,6 +104,18 @@ static void periodic_sides(void **state)
     REFUSED(tobi_world_start(w, &err), TOBI_UNSUPPORTED, "solid 'jelly' comes to x = 0.015 m; solids do not "
             "go through periodic sides");
     tobi_world_destroy(w);
+    w = make_world("dfsph", 0, 1, 0.175);
+    tobi_body_def raft = tobi_default_body_def();
+    raft.name = "raft";
+    raft.box_min[0] = 0.41; raft.box_max[0] = 0.49; raft.box_min[1] = 0.3; raft.box_max[1] = 0.34;
+    raft.box_min[2] = -0.5; raft.box_max[2] = 0.5;
+    raft.density = 500;
+    raft.dynamics = TOBI_FREE;
+    raft.velocity[0] = 1;
+    OK(tobi_world_add_body(w, &raft, &err));
+    REFUSED(tobi_world_advance(w, 0.05, NULL, &err), TOBI_UNSUPPORTED, "unless they reach from side to side; "
+            "keep it there with \"locked\": \"x\", or lengthen the domain");
+    tobi_world_destroy(w);
 }
 
 /* A blade may start in the water beside a solid: what it may not start in is the solid. */
