@@ -43,6 +43,9 @@
 /* Of the loss of neighbours in full vessels: only particles next to alone in a cavity are a surface. */
 #define ISPH_CAVITY_BEGIN 0.6
 #define ISPH_CAVITY_OPEN 0.8
+/* Loss of neighbours over that of a flat surface: up to which it is flat, and from which it is a tip. */
+#define ISPH_FLAT 1.1
+#define ISPH_TIP 1.2
 /* Of tr M/dim: less are drops, which do not shift and know no gradient of the velocity; more are the bulk. */
 #define ISPH_DROP 0.6
 #define ISPH_BULK 0.95
@@ -442,8 +445,8 @@ TOBI_FN void isph_store_pressure(const isph_view *v, int64_t i, double *totals)
 }
 
 /* v -= dt/rho grad p, eq. (9): the difference form, with M^-1, in the bulk; the plain sum, with -p_i in place
-   of missing neighbours, at a free surface: corrected there, it would throw particles out. totals:
-   |grad p|. */
+   of missing neighbours, at a free surface: corrected there, it would throw particles out. Along a flat
+   surface the difference form stays: else the top row slides (decision 103). totals: |grad p|. */
 typedef struct isph_projection_acc { lane p, x, y, z; } isph_projection_acc;
 
 TOBI_FN void isph_projection_start(const isph_view *v, int64_t i, isph_projection_acc *a)
@@ -471,21 +474,41 @@ TOBI_FN void isph_projection_pair(const isph_view *v, int64_t i, const tobi_neig
     a->x += q*n->dx; a->y += q*n->dy; a->z += q*n->dz;
 }
 
+/* How surely the surface at i is flat: 0 to 1. */
+TOBI_FN double isph_flatness(const isph_view *v, int64_t i)
+{
+    const double loss = 1 - v->trace[i]/v->dimension;
+    return isph_fade(loss, ISPH_FLAT*v->surface_loss, ISPH_TIP*v->surface_loss);
+}
+
+/* Takes that share of the part of x across n out. */
+TOBI_FN void isph_keep_along(double x[3], tobi_float4 n, double share)
+{
+    const double n2 = (double)n.x*n.x + (double)n.y*n.y + (double)n.z*n.z;
+    if (!(n2 > 1e-24)) return;
+    const double along = share*(x[0]*n.x + x[1]*n.y + x[2]*n.z)/n2;
+    x[0] = (1 - share)*x[0] + along*n.x;
+    x[1] = (1 - share)*x[1] + along*n.y;
+    x[2] = (1 - share)*x[2] + along*n.z;
+}
+
 TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projection_acc *a, double *totals)
 {
     const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0));
     const double own = v->pressure[i]/isph_density_of(v, i), mean = 2*v->gate[i]*v->surface_force*own,
                  k = -v->slope;
     double x[3] = {k*s.x, k*s.y, k*s.z};
-    double g[3];
+    double g[3], lack[3];
     if (v->own_pressure > 0)
         for (int c = 0; c < 3; c++)
             x[c] += v->own_pressure*(1 - v->gate[i])*own*(&v->concentration_gradient[i].x)[c];
     isph_apply(&v->inverse[i], x, g);
     if (v->as_summed)
         for (int c = 0; c < 3; c++) g[c] = x[c];
-    for (int c = 0; c < 3; c++) g[c] += v->gate[i]*(x[c] - g[c]);
-    for (int c = 0; c < 3; c++) g[c] += mean*(&v->concentration_gradient[i].x)[c];
+    for (int c = 0; c < 3; c++)
+        lack[c] = v->gate[i]*(x[c] - g[c]) + mean*(&v->concentration_gradient[i].x)[c];
+    isph_keep_along(lack, v->concentration_gradient[i], isph_flatness(v, i));
+    for (int c = 0; c < 3; c++) g[c] += lack[c];
     totals[0] += sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
     for (int c = 0; c < v->dimension; c++) (&v->velocity[i].x)[c] -= (float)(v->dt/v->density*g[c]);
 }

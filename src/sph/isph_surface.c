@@ -51,10 +51,11 @@ void isph_surface_measure(isph_view *v, const tobi_smoothing_constants *c, doubl
         scale[k] = v->uniform_scale ? 1
                  : isph_scale(c->dimension, sum_row(c, v->own_scale ? 0 : k, NULL).trace);
     const row_sums top = sum_row(c, 0, scale);
+    v->surface_loss = 1 - top.trace/c->dimension;
     v->lattice_count = sum_row(c, REACH, NULL).count;
     /* p = rho g d (height + layer): sum a (p_i - p_j) + e p_i = 0, and dp/dz = -rho g. The gate is open. */
     v->surface_row = 1;
-    v->surface_row = top.difference/(height*isph_excess(v, 1 - top.trace/c->dimension, top.weight, 1));
+    v->surface_row = top.difference/(height*isph_excess(v, v->surface_loss, top.weight, 1));
     v->surface_force = (1/(d*d) - top.gradient)/(2*height*top.concentration_gradient);
     if (height >= LEAST_HEIGHT) return;
     v->surface_row = AT_ROW;

@@ -76,7 +76,8 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
                        .weight = c->weight, .slope = c->slope, .shape = shape, .full = 2*c->rate,
                        .inverse_h = (float)(1/pool.h), .density = 1000, .dt = 1e-3, .motion_dt = 2e-3,
                        .way = 5e-4, .second_order = 1, .keeps_volume = 1, .shift_damping = 2,
-                       .surface_row = 1.2, .surface_force = 1.1, .volume_gain = 0.1, .shifting = 0.5,
+                       .surface_row = 1.2, .surface_force = 1.1, .surface_loss = 0.3,
+                       .volume_gain = 0.1, .shifting = 0.5,
                        .keep = 0.9, .mean = 3, .carry = 0.4, .gain = 0.7,
                        .volume_sum = 1, .by_count = 1, .lattice_count = dimension == 3 ? 56 : 20,
                        .xsph = 0.3f, .kinematic = viscosities, .fluid = fluids,
@@ -344,11 +345,17 @@ static void oracle_isph_store_pressure(check *c, int64_t i, const sums *s)
 
 static void oracle_isph_projection(check *c, int64_t i, const sums *s)
 {
-    double g[3];
+    const float *n = &view.concentration_gradient[i].x;
+    const double loss = 1 - view.trace[i]/view.dimension, flat = fmin(fmax((0.36 - loss)/0.03, 0), 1);
+    double g[3], lack[3], along = 0, square = 0;
     isph_apply(&view.inverse[i], s->gradient, g);
+    for (int a = 0; a < 3; a++) {
+        lack[a] = view.gate[i]*(s->gradient[a] - g[a] + 2*1.1*view.pressure[i]/relative(i)*n[a]);
+        along += lack[a]*n[a];
+        square += n[a]*n[a];
+    }
     for (int a = 0; a < view.dimension; a++) {
-        g[a] += view.gate[i]*(s->gradient[a] - g[a]);
-        g[a] += 2*1.1*view.gate[i]*view.pressure[i]/relative(i)*(&view.concentration_gradient[i].x)[a];
+        g[a] += flat*along*n[a]/square + (1 - flat)*lack[a];
         compare(c, (&view.velocity[i].x)[a], (&before.x)[a] - view.dt/view.density*g[a],
                 view.dt/view.density*1000/view.h);
     }

@@ -468,6 +468,23 @@ static void a_square_in_a_full_vessel(void **state)
     tobi_world_destroy(w);
 }
 
+/* The top row slid to and fro once, and stirred the pool (decision 103). */
+static void a_pool_rests(void **state)
+{
+    static const char text[] =
+        "{ \"method\": \"isph\", \"dimension\": 2, \"threads\": 1, \"spacing\": 0.02, \"end_time\": 8,"
+        "\"domain\": { \"min\": [0, 0], \"max\": [0.8, 0.8] }, \"fluids\": [ { \"name\": \"water\","
+        "\"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [0.8, 0.4] } } ] } ] }";
+    tobi_step_info info;
+    tobi_world *w;
+    (void)state;
+    OK(start_scene(text, &w, &err));
+    OK(tobi_world_advance(w, 8, &info, &err));
+    print_message("pool of 320 kg/m: %.2g J/m after 8 s\n", info.kinetic_energy);
+    assert_true(info.kinetic_energy < 0.5*320*1e-3*1e-3);        /* 1 mm/s */
+    tobi_world_destroy(w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -486,6 +503,7 @@ int main(void)
         cmocka_unit_test(a_slab_flies_until_it_arrives),
         cmocka_unit_test(water_around_a_disc_rests),
         cmocka_unit_test(a_square_in_a_full_vessel),
+        cmocka_unit_test(a_pool_rests),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
