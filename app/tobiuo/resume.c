@@ -13,7 +13,7 @@ typedef struct resume_options {
 } resume_options;
 
 static const struct argp_option options[] = {
-    { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s (that of the scene)", 0 },
+    { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s (that of the run before)", 0 },
     { "threads", 't', "N", 0, "threads (0 = all cores)", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
     { 0 }

@@ -61,7 +61,7 @@ for word in "help run" "run --help" "run -h"; do
 done
 expect 2 "no command 'rnu'" help rnu
 expect 0 "" help resume
-check "help says when a run that goes on stops" grep -q "that of the scene" out.txt
+check "help says when a run that goes on stops" grep -q "that of the run" out.txt
 expect 2 "which SCENE?" run
 expect 2 "--nonsense" run --nonsense tank.json
 expect 2 "not a positive number" run tank.json --until soon
