@@ -195,6 +195,10 @@ void isph_bodies_accelerate(isph_solver *m, tobi_system *s, double dt)
 {
     const mirrors all = { m, s, dt };
     tobi_loop(s->sim->exec.threads, sph_of(s)->links.count, 0, accelerate, &all);
+}
+
+void isph_bodies_refresh_images(isph_solver *m)
+{
     if (m->view.last_link)
         tobi_launch(m->exec, m->kernel->isph_refresh_images, &m->view, 0, m->view.count, NULL);
 }

@@ -427,6 +427,7 @@ void isph_forces_predict(isph_solver *m, tobi_system *s)
     for (int k = 0; k < s->sim->body_count; k++)
         memcpy(m->body[k].expected, sph_of(s)->links.answer[k], sizeof m->body->expected);
     isph_bodies_accelerate(m, s, s->dt);
+    isph_bodies_refresh_images(m);
 }
 
 static void add_spread(isph_solver *m, double *rows)
@@ -491,6 +492,7 @@ void isph_forces_correct(isph_solver *m, tobi_system *s)
     for (int k = 0; k < s->sim->body_count; k++)
         for (int a = 0; a < 6; a++) now[k][a] -= m->body[k].expected[a];
     isph_bodies_accelerate(m, s, s->dt);
+    isph_bodies_refresh_images(m);
     for (int k = 0; k < s->sim->body_count; k++)
         for (int a = 0; a < 6; a++) now[k][a] += m->body[k].expected[a];
 }
