@@ -43,8 +43,9 @@ void tobi_rigid_restore_gravity(tobi_dynamics_state *state, const double gravity
 /* Loads of the lines and surfaces that deform where the bodies are, after a checkpoint has placed them. */
 void tobi_rigid_follow(tobi_dynamics_state *state);
 
-/* s: at most 1/60, a step in which gravity does little to the smallest body that moves and the fastest turns
-   by half a radian, less where bodies are thin: contact looks ahead along straight lines. */
+/* s: 1/60, or more where all bodies are large, but a step in which gravity does little to the smallest body
+   that moves and the fastest turns by half a radian, less where bodies are thin or their shape changes:
+   contact looks ahead along straight lines. */
 double tobi_rigid_step_limit(const tobi_dynamics_state *state);
 
 /* Contacts of the last step that carried a force, and the sweeps of the solver. */
