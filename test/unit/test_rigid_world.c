@@ -3,7 +3,7 @@
 #include "rigid/script.h"
 #include "scene/report.h"
 #include "scene/scene.h"
-#include "world/world.h"
+#include "run_to.h"
 #include <unistd.h>
 
 static void write_file(const char *path, const char *text)
@@ -66,13 +66,6 @@ static void destroy(scene *s)
 {
     tobi_world_destroy(s->world);
     tobi_script_free(s->script);
-}
-
-static uint64_t run_to(tobi_world *w, double t)
-{
-    tobi_error err = { 0 };
-    if (tobi_world_advance(w, t, NULL, &err) != TOBI_OK) fail_msg("%s", err.text);
-    return tobi_world_hash(w);
 }
 
 /* run = run + restart, and 1 thread = 3 threads, bit for bit, through collisions and phases of control. */

@@ -2,8 +2,7 @@
    other loses. Overlaps that are taken out cost a little angular momentum. A flap pushes a ball, with the
    same bits by any threads and after a restart; an eel on the floor comes to rest. */
 #include "rigid_rig.h"
-#include "calls.h"
-#include "world/world.h"
+#include "run_to.h"
 #include <unistd.h>
 
 static const double NONE[3] = { 0, 0, 0 };
@@ -162,10 +161,13 @@ static tobi_world *make_flap(int threads)
     return w;
 }
 
-static uint64_t run_to(tobi_world *w, double t)
+/* m/s, along x, of the mesh of a body where it was hit. */
+static double surface_speed(const tobi_body *b, const tobi_bvh_hit *hit)
 {
-    OK(tobi_world_advance(w, t, NULL, &err));
-    return tobi_world_hash(w);
+    const int32_t *v = b->mesh.triangles[hit->triangle];
+    double sum = 0;
+    for (int k = 0; k < 3; k++) sum += hit->barycentric[k]*b->vertex_velocity[v[k]][0];
+    return sum;
 }
 
 /* The ball's middle stays its radius away from the flap, and goes on when the flap is back. */
@@ -184,16 +186,13 @@ static void test_flap(void **state)
         deepest = fmax(deepest, RADIUS - hit.signed_distance);
         if (ball->info.contact_force[0] <= 0 || hit.signed_distance > 1.02*RADIUS) continue;
         touched++;
-        /* What the flap's surface has where the ball touches it. */
-        const double z = hit.point[2];
-        fastest = fmax(fastest, z*z*2*acos(-1)/0.8*sin(2*acos(-1)*w->sim.time/0.8));
+        fastest = fmax(fastest, surface_speed(flap, &hit));
     }
     print_message("a flap touches the ball at %d times of 240, up to %.2g m deep, where it has up to %.3g "
                   "m/s; the ball goes on at %.3g m/s, at %.3g m\n", (int)touched, deepest, fastest,
                   ball->rigid.velocity[0], ball->rigid.position[0]);
     assert_true(touched > 20 && deepest < 0.01*RADIUS && ball->rigid.position[0] > 0.8);
-    /* The mesh bends in edges of 0.15 m: it has up to 6 % more there than the curve. */
-    assert_true(fabs(ball->rigid.velocity[0]/fastest - 1) < 0.1);
+    assert_true(fabs(ball->rigid.velocity[0]/fastest - 1) < 0.02);
     tobi_world_destroy(w);
 }
 
@@ -259,7 +258,7 @@ static void test_eel(void **state)
                   "up to %.3g of the energy at its wave's speed, and %.2g after; it went %.2g m\n",
                   -lowest/thick, highest, most/(0.5*mass*shape*shape), after/(0.5*mass*shape*shape),
                   eel->rigid.position[0] - 2);
-    assert_true(-lowest < 0.01*thick && highest < 0.1*thick);
+    assert_true(-lowest < 0.01*thick && highest < 0.02*thick);
     assert_true(most > 0 && most < 0.5*mass*shape*shape && after < 1e-12*most);
     rig_close(&g);
 }

@@ -1,9 +1,8 @@
 /* Swimmers in water, by all methods that know bodies moved by forces: a run equals a run with a restart and
    one with more threads, bit by bit; what the swimmer gains the water loses; checkpoints and motions that do
    not fit are refused. */
-#include "calls.h"
 #include "core/body.h"
-#include "world/world.h"
+#include "run_to.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -90,12 +89,6 @@ static tobi_world *build(const char *method, int threads)
     OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
     OK(tobi_world_add_body(w, &b, &err));
     return w;
-}
-
-static uint64_t run_to(tobi_world *w, double t)
-{
-    OK(tobi_world_advance(w, t, NULL, &err));
-    return tobi_world_hash(w);
 }
 
 static void test_restart(void **state)
