@@ -39,6 +39,17 @@ static tobi_status check_value(const tobi_param_table *table, const tobi_param *
     return TOBI_OK;
 }
 
+static tobi_status check_text(const tobi_param_table *table, const tobi_param *p, const void *at,
+                              tobi_error *err)
+{
+    const char *text;
+    memcpy(&text, at, sizeof text);
+    const size_t bytes = text && strcmp(p->unit, "name") == 0 ? strlen(text) : 0;
+    if (bytes <= TOBI_NAME_BYTES) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "%s.%s has %zu bytes, allowed are up to %d", table->name, p->key,
+                     bytes, TOBI_NAME_BYTES);
+}
+
 tobi_status tobi_param_check(const tobi_param_table *table, const void *def, tobi_error *err)
 {
     for (const tobi_param *p = table->rows; p->key; p++) {
@@ -51,7 +62,7 @@ tobi_status tobi_param_check(const tobi_param_table *table, const void *def, tob
             memcpy(v, at, sizeof v);
             n = p->text && memcmp(v, p->def, sizeof v) == 0 ? 0 : 3;      /* the word's value */
             break;
-        case TOBI_PARAM_TEXT: continue;
+        case TOBI_PARAM_TEXT: TOBI_TRY(check_text(table, p, at, err)); continue;
         default: memcpy(&i, at, sizeof i); v[0] = i; break;
         }
         for (i = 0; i < n; i++) TOBI_TRY(check_value(table, p, v[i], err));

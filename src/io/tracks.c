@@ -10,6 +10,9 @@
 tobi_status tobi_track_add(tobi_moment *m, const char *body, const double point[3], tobi_error *err)
 {
     int k = 0;
+    TOBI_NEED(m, "the moment");
+    TOBI_NEED(body, "the body");
+    TOBI_NEED(point, "the point");
     while (k < m->track_count && strncmp(m->tracks[k].body, body, sizeof m->tracks[k].body - 1) != 0) k++;
     if (k == m->track_count) {
         tobi_moment_track *tracks = reallocarray(m->tracks, (size_t)k + 1, sizeof *tracks);

@@ -209,6 +209,8 @@ tobi_status tobi_frames_write(tobi_run *run, const tobi_snapshot *snapshot, int 
 
 int64_t tobi_run_pictures(const tobi_run *run, double *seconds)
 {
+    if (seconds) *seconds = 0;
+    if (!run) return 0;
     if (seconds) *seconds = 1e-9*(double)__atomic_load_n(&run->picture_ns, __ATOMIC_RELAXED);
     return __atomic_load_n(&run->pictures, __ATOMIC_RELAXED);
 }

@@ -285,7 +285,11 @@ tobi_status tobi_run_output_end(tobi_run *run, tobi_error *err)
     return tobi_record_reaches(last, tobi_world_time(run->world)) ? TOBI_OK : tobi_run_output(run, err);
 }
 
-tobi_status tobi_run_wait(tobi_run *run, tobi_error *err) { return tobi_writer_wait(run->writer, err); }
+tobi_status tobi_run_wait(tobi_run *run, tobi_error *err)
+{
+    TOBI_NEED(run, "run");
+    return tobi_writer_wait(run->writer, err);
+}
 
 /* A checkpoint counts on the rows: a resumed run cuts the tables back to it, and cannot make any. */
 static tobi_status save(tobi_run *run, tobi_error *err)

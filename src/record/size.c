@@ -75,10 +75,10 @@ static tobi_run_size size_output(const tobi_run *run, double particles, double b
 tobi_status tobi_run_estimate(tobi_world *world, const tobi_output_def *output, double end,
                               tobi_run_size *size, tobi_error *err)
 {
-    tobi_run run = { .world = world, .output = *output };
     int64_t particles, body_particles, memory;
     TOBI_NEED_WORLD(world);
     TOBI_NEED(output, "the output");
+    tobi_run run = { .world = world, .output = *output };
     TOBI_NEED(size, "where the size goes");
     TOBI_TRY(tobi_param_check(&tobi_output_table, output, err));
     TOBI_TRY(tobi_series_fields(&run, err));

@@ -116,6 +116,7 @@ static const struct { const tobi_column *columns; int count; } tables[] = {
 
 const tobi_column *tobi_run_column(tobi_table table, int index)
 {
+    if (table < 0 || table >= (int)(sizeof tables/sizeof *tables)) return NULL;
     return index >= 0 && index < tables[table].count ? &tables[table].columns[index] : NULL;
 }
 

@@ -85,6 +85,7 @@ int tobi_trouble_write(tobi_run *run, char *text, size_t room)
 void tobi_run_go_on(tobi_run *run, int on)
 {
     tobi_csv *tables[TOBI_TABLES];
+    if (!run) return;
     tobi_tables_list(run, tables);
     run->goes_on = on != 0;
     for (int k = 0; k < TOBI_TABLES; k++)

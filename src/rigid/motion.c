@@ -254,7 +254,7 @@ void tobi_motion_free(tobi_motion *motion)
 void tobi_motion_steer(void *user, const double steer[3])
 {
     tobi_motion *motion = user;
-    if (!motion || tobi_motion_is_rigid(motion)) return;
+    if (!motion || !steer || tobi_motion_is_rigid(motion)) return;
     tobi_script_steer(motion->kind == KIND_SUM ? motion->part[0]->script : motion->script, steer);
 }
 
@@ -409,6 +409,7 @@ tobi_status tobi_motion_positions(void *user, double t, int64_t n, const double 
                                   double (*position)[3], tobi_error *err)
 {
     TOBI_NEED(user, "the motion");
+    TOBI_NEED(n <= 0 || (rest && position), "a list of positions");
     const tobi_motion *motion = user;
     placing p;
     if (motion->kind == KIND_SUM) return move_by_sum(motion, t, n, rest, position, err);

@@ -304,6 +304,7 @@ tobi_status tobi_script_flow(void *user, int64_t n, const double (*place)[3], do
                              tobi_error *err)
 {
     TOBI_NEED(user, "the script");
+    TOBI_NEED(n <= 0 || (place && velocity), "a list of places or velocities");
     tobi_script *s = user;
     int64_t i;
     const char *why;
@@ -356,6 +357,7 @@ tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_c
                                 tobi_error *err)
 {
     TOBI_NEED(user, "the script");
+    TOBI_NEED(in && out, "the input or the output");
     tobi_script *s = user;
     double from[27] = { in->time }, into[10] = { 0, 0, 0, 0, 0, 0, in->phase };
     memcpy(from + 1, in->position, 3*sizeof *from);

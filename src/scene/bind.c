@@ -270,10 +270,10 @@ static void bind_choice(const slot *s)
 }
 
 /* Names become parts of file names and cells of tables: a program that opens a table takes a cell
-   that begins with + - = or @ for a formula and computes it. A world keeps 63 bytes of a name. */
+   that begins with + - = or @ for a formula and computes it. */
 static int is_name(const char *name)
 {
-    if (!name[0] || strchr(".+-=@", name[0]) || strlen(name) > 63) return 0;
+    if (!name[0] || strchr(".+-=@", name[0]) || strlen(name) > TOBI_NAME_BYTES) return 0;
     for (const char *c = name; *c; c++)
         if ((unsigned char)*c < ' ' || *c == 127 || strchr("/\\:*?\"<>|,", *c)) return 0;
     return 1;

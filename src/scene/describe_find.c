@@ -135,7 +135,7 @@ static void add_all(words *w)
 char *tobi_scene_suggest(const char *word)
 {
     words w = { 0 };
-    if (!(w.out = open_memstream(&w.text, &w.size))) return NULL;
+    if (!word || !(w.out = open_memstream(&w.text, &w.size))) return NULL;
     add_all(&w);
     fclose(w.out);
     const char **list = calloc((size_t)w.count + 1, sizeof *list), *near = NULL;

@@ -48,6 +48,7 @@ static const char *find_longer(const char *word, int length, const char *const *
 const char *tobi_suggest(const char *word, const char *const *candidates, size_t count)
 {
     const char *best = NULL;
+    if (!word || !candidates) return NULL;
     int length = strlen(word) > LONGEST ? LONGEST + 1 : (int)strlen(word);
     int limit = 1 + length/4;       /* one slip in a short word, more in a long one */
     if (length > LONGEST) return NULL;

@@ -26,6 +26,7 @@ static int meets(const double from[3], const double (*vertices)[3], const int32_
 
 const char *tobi_drawing_body_around(const tobi_drawing *d)
 {
+    if (!d) return NULL;
     const tobi_picture *p = &d->picture;
     for (int k = 0; p->has_camera && p->dimension == 3 && k < d->moment->surface_count; k++) {
         const tobi_moment_surface *s = &d->moment->surfaces[k];

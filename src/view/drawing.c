@@ -61,7 +61,7 @@ static int flows_at(const tobi_inlet_look *in, double time)
 
 int tobi_looks_hides(const tobi_looks *looks, double time, const double x[3])
 {
-    for (int k = 0; k < looks->inlet_count; k++) {
+    for (int k = 0; looks && x && k < looks->inlet_count; k++) {
         const tobi_inlet_look *in = &looks->inlets[k];
         const double slack = 1e-9;      /* m */
         double at[3] = { 0, 0, 0 };
@@ -79,16 +79,16 @@ int tobi_looks_hides(const tobi_looks *looks, double time, const double x[3])
 int tobi_looks_differ(const tobi_looks *looks)
 {
     int differ = 0;
-    for (int k = 0; k < looks->material_count; k++)
+    for (int k = 0; looks && k < looks->material_count; k++)
         differ |= tobi_looks_radius(looks, k) != 0.5*looks->spacing;
     return differ;
 }
 
 double tobi_looks_radius(const tobi_looks *looks, int material)
 {
-    const int known = material >= 0 && material < looks->material_count;
+    const int known = looks && material >= 0 && material < looks->material_count;
     const double own = known ? looks->materials[material].spacing : 0;
-    return 0.5*(own > 0 ? own : looks->spacing);
+    return 0.5*(own > 0 ? own : looks ? looks->spacing : 0);
 }
 
 static tobi_status no_memory(tobi_error *err)

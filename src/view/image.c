@@ -171,6 +171,7 @@ tobi_status tobi_image_read(const char *path, tobi_image **image, tobi_error *er
 
 void tobi_image_color(const tobi_image *image, const float uv[2], float rgb[3])
 {
+    if (!image || !uv || !rgb) return;
     const vec color = image_color(image, 0, uv[0], uv[1]);
     const float linear[3] = { color.x, color.y, color.z };
     for (int c = 0; c < 3; c++) rgb[c] = (float)to_byte(image->linear, linear[c])/255;
@@ -178,6 +179,7 @@ void tobi_image_color(const tobi_image *image, const float uv[2], float rgb[3])
 
 void tobi_image_size(const tobi_image *image, int *width, int *height, const uint8_t **rgb)
 {
-    *width = image->width[0], *height = image->height[0];
-    *rgb = image->rgb[0];
+    if (width) *width = image ? image->width[0] : 0;
+    if (height) *height = image ? image->height[0] : 0;
+    if (rgb) *rgb = image ? image->rgb[0] : NULL;
 }

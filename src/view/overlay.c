@@ -18,6 +18,7 @@ static void mix_pixel(const tobi_overlay *o, int x, int y, const uint8_t color[3
 void tobi_overlay_box(const tobi_overlay *o, int x, int y, int width, int height, const uint8_t color[3],
                       float share)
 {
+    if (!o || !color) return;
     const int right = x + width < o->width ? x + width : o->width, left = x > 0 ? x : 0;
     const int bottom = y + height < o->height ? y + height : o->height, top = y > 0 ? y : 0;
     for (int v = top; v < bottom; v++)
@@ -28,7 +29,7 @@ void tobi_overlay_line(const tobi_overlay *o, float x0, float y0, float x1, floa
                        const uint8_t color[3])
 {
     const float reach = 0.5f*thickness + 1, dx = x1 - x0, dy = y1 - y0, square = dx*dx + dy*dy;
-    if (!isfinite(square)) return;
+    if (!o || !color || !isfinite(square)) return;
     const int left = (int)fmaxf(fminf(x0, x1) - reach, 0), top = (int)fmaxf(fminf(y0, y1) - reach, 0);
     const int right = (int)fminf(fmaxf(x0, x1) + reach, (float)o->width - 1);
     const int bottom = (int)fminf(fmaxf(y0, y1) + reach, (float)o->height - 1);
@@ -63,13 +64,13 @@ float tobi_overlay_text(const tobi_overlay *o, float x, float y, float size, con
                         const uint8_t color[3])
 {
     const float from = x, unit = size/CAPITALS;
-    for (; *text; text++) x = draw_letter(o, x, y, unit, *text, color);
+    for (; text && *text; text++) x = draw_letter(o, x, y, unit, *text, color);
     return x - from;
 }
 
 float tobi_overlay_text_width(float size, const char *text)
 {
     float width = 0;
-    for (; *text; text++) width += (float)view_letter_advance(*text)*size/CAPITALS;
+    for (; text && *text; text++) width += (float)view_letter_advance(*text)*size/CAPITALS;
     return width;
 }

@@ -147,8 +147,9 @@ void tobi_looks_color(const tobi_looks *looks, int material, int part, float col
 {
     static const float plain[4] = { 0.5f, 0.5f, 0.5f, 1 };
     static const float share_of_liquid = 0.6f;      /* of light that is kept away */
+    if (!color) return;
     memcpy(color, plain, sizeof plain);
-    if (material < 0 || material >= looks->material_count) return;
+    if (!looks || material < 0 || material >= looks->material_count) return;
     const tobi_material_look *look = &looks->materials[material];
     find_color(looks, material, part < SKIN || part >= PARTS ? SKIN : part, 0, color);
     if (look->liquid) color[3] = share_of_liquid;

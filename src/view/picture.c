@@ -19,6 +19,7 @@ tobi_picture tobi_default_picture(void)
 
 void tobi_picture_set_view(tobi_picture *p, const tobi_view_def *view)
 {
+    if (!p || !view) return;
     p->has_camera = view->angle > 0 && p->dimension == 3;
     if (p->has_camera) p->field_of_view = view->angle;
     p->width = view->width;

@@ -99,6 +99,7 @@ tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_
     TOBI_NEED(def, "the definition");
     TOBI_TRY(tobi_param_check(&tobi_joint_table, def, err));
     TOBI_NEED(def->name, "the name of the joint");
+    TOBI_NEED(def->body, "the body of the joint");
     tobi_constraints *c = &w->sim.constraints;
     tobi_constraint j = { 0 };
     double axis[3];

@@ -76,6 +76,7 @@ tobi_status tobi_world_add_line(tobi_world *w, const tobi_line_def *def, tobi_er
     TOBI_NEED(def, "the definition");
     TOBI_TRY(tobi_param_check(&tobi_line_table, def, err));
     TOBI_NEED(def->name, "the name of the line");
+    TOBI_NEED(def->body, "the body of the line");
     tobi_line l = { .kind = def->kind, .stiffness = def->stiffness, .damping = def->damping,
                     .weight = def->weight, .rests = def->rests };
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more lines");

@@ -187,14 +187,14 @@ enum { CONSTANT_COUNT = sizeof constants/sizeof constants[0] };
 
 int tobi_solid_uses(int model, const char *key)
 {
-    for (int k = 0; k < CONSTANT_COUNT; k++)
+    for (int k = 0; key && k < CONSTANT_COUNT; k++)
         if (strcmp(constants[k].key, key) == 0) return (constants[k].models & OF(model)) != 0;
     return 1;
 }
 
 void tobi_solid_list(int model, char *text, size_t size)
 {
-    size_t used = (size_t)snprintf(text, size, "density or mass");
+    size_t used = text ? (size_t)snprintf(text, size, "density or mass") : size;
     for (int k = 0; k < CONSTANT_COUNT && used < size; k++)
         if (constants[k].models & OF(model))
             used += (size_t)snprintf(text + used, size - used, ", %s", constants[k].key);

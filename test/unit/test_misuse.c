@@ -9,6 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include "calls.h"
+#include "tobiuo/drawing.h"
+#include "tobiuo/motion.h"
+#include "tobiuo/overlay.h"
+#include "tobiuo/params.h"
 #include "tobiuo/run.h"
 #include "tobiuo/scene.h"
 
@@ -224,6 +228,89 @@ static void runs(void **state)
     tobi_world_destroy(w);
 }
 
+/* Calls that answer with a number or nothing answer 0 or NULL, and change nothing. */
+static void no_object_and_no_text(void **state)
+{
+    (void)state;
+    const double at[3] = { 0 };
+    const tobi_overlay nowhere = { 0 };
+    const uint8_t black[3] = { 0 };
+    float color[4] = { 7 };
+    double seconds = 1;
+    int width = 1;
+    tobi_world *w = make_world("dfsph");
+    tobi_run_size size;
+    tobi_moment moment = { 0 };
+    REFUSED(tobi_run_estimate(w, NULL, 1, &size, &err), TOBI_INVALID, "the output is NULL");
+    REFUSED(tobi_run_wait(NULL, &err), TOBI_INVALID, "run is NULL");
+    REFUSED(tobi_track_add(&moment, NULL, at, &err), TOBI_INVALID, "the body is NULL");
+    REFUSED(tobi_track_add(NULL, "a", at, &err), TOBI_INVALID, "the moment is NULL");
+    REFUSED(tobi_track_add(&moment, "a", NULL, &err), TOBI_INVALID, "the point is NULL");
+    tobi_motion *motion;
+    OK(tobi_motion_translation(at, &motion, &err));
+    REFUSED(tobi_motion_positions(motion, 0, 1, &at, NULL, &err), TOBI_INVALID,
+            "a list of positions is NULL");
+    tobi_motion_free(motion);
+    tobi_run_go_on(NULL, 1);
+    assert_true(tobi_run_pictures(NULL, &seconds) == 0 && seconds == 0);
+    assert_true(!tobi_run_column((tobi_table)-1, 0) && !tobi_run_column(TOBI_TABLE_SOLIDS + 1, 0));
+    assert_true(!tobi_scene_suggest(NULL) && !tobi_suggest(NULL, NULL, 1) && !tobi_suggest("a", NULL, 1));
+    assert_int_equal(tobi_solid_uses(0, NULL), 1);
+    tobi_solid_list(0, NULL, 10);
+    assert_true(!tobi_looks_hides(NULL, 0, at) && !tobi_looks_differ(NULL));
+    assert_true(tobi_looks_radius(NULL, 0) == 0);
+    tobi_looks_color(NULL, 0, 0, color);
+    assert_true(color[0] == 0.5f && !tobi_drawing_body_around(NULL));
+    tobi_picture_set_view(NULL, NULL);
+    tobi_image_size(NULL, &width, NULL, NULL);
+    tobi_image_color(NULL, NULL, NULL);
+    assert_int_equal(width, 0);
+    tobi_overlay_box(NULL, 0, 0, 9, 9, black, 1);
+    tobi_overlay_line(&nowhere, 0, 0, 9, 9, 1, NULL);
+    assert_true(tobi_overlay_text(NULL, 0, 0, 9, NULL, black) == 0 && tobi_overlay_text_width(9, NULL) == 0);
+    tobi_world_destroy(w);
+}
+
+/* A world keeps 63 bytes of a name; one that it would cut is not taken. Some names must be there. */
+static void names_that_are_none(void **state)
+{
+    (void)state;
+    char name[65];
+    tobi_world *w = make_world("dfsph");
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_body_def body = tobi_default_body_def();
+    tobi_probe_def probe = tobi_default_probe_def();
+    tobi_line_def line = tobi_default_line_def();
+    tobi_joint_def joint = tobi_default_joint_def();
+    tobi_inlet_def inlet = tobi_default_inlet_def();
+    tobi_outlet_def outlet = tobi_default_outlet_def();
+    memset(name, 'a', 64);
+    name[64] = '\0';
+    fluid.name = solid.name = body.name = probe.name = line.name = joint.name = name;
+    inlet.name = outlet.name = name;
+    const char *const long_name = ".name has 64 bytes, allowed are up to 63";
+    REFUSED(tobi_world_add_fluid(w, &fluid, NULL, 0, &err), TOBI_INVALID, long_name);
+    REFUSED(tobi_world_add_solid(w, &solid, NULL, 0, &err), TOBI_INVALID, long_name);
+    REFUSED(tobi_world_add_body(w, &body, &err), TOBI_INVALID, long_name);
+    REFUSED(tobi_world_add_probe(w, &probe, &err), TOBI_INVALID, long_name);
+    REFUSED(tobi_world_add_line(w, &line, &err), TOBI_INVALID, long_name);
+    REFUSED(tobi_world_add_joint(w, &joint, &err), TOBI_INVALID, long_name);
+    REFUSED(tobi_world_add_inlet(w, &inlet, &err), TOBI_INVALID, long_name);
+    REFUSED(tobi_world_add_outlet(w, &outlet, &err), TOBI_INVALID, long_name);
+    name[63] = '\0';
+    OK(tobi_world_add_probe(w, &probe, &err));
+    assert_string_equal(tobi_world_probe_name(w, 0, NULL), name);
+    body.name = joint.to_body = line.to_body = "box";
+    joint.name = line.name = "held";
+    line.stiffness = 1;
+    for (int a = 0; a < 3; a++) body.box_max[a] = 0.1;
+    OK(tobi_world_add_body(w, &body, &err));
+    REFUSED(tobi_world_add_joint(w, &joint, &err), TOBI_INVALID, "the body of the joint is NULL");
+    REFUSED(tobi_world_add_line(w, &line, &err), TOBI_INVALID, "the body of the line is NULL");
+    tobi_world_destroy(w);
+}
+
 static void scenes(void **state)
 {
     (void)state;
@@ -296,6 +383,8 @@ int main(void)
         cmocka_unit_test(times_that_are_none),
         cmocka_unit_test(values_that_are_none),
         cmocka_unit_test(runs),
+        cmocka_unit_test(no_object_and_no_text),
+        cmocka_unit_test(names_that_are_none),
         cmocka_unit_test(scenes),
         cmocka_unit_test(scenes_in_memory),
     };
