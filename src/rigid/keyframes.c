@@ -43,6 +43,7 @@ struct tobi_keyframes {
 typedef struct reader {
     const char *what, *path;            /* "keyframes", "gravity" or "flow"            */
     int64_t line;
+    const char *separators;             /* those that the header may have, then the one that it has */
     int meaning[MOST_COLUMNS];          /* column of each field of a line              */
     int fields;
     int given[COLUMNS];
@@ -83,11 +84,11 @@ static tobi_status fail_here(const reader *r, tobi_error *err, const char *what,
 }
 
 /* The next field of a line, without blanks and quotes around it; NULL at the end. */
-static char *next_field(char **rest)
+static char *next_field(const reader *r, char **rest)
 {
     char *field = *rest;
     if (!field) return NULL;
-    char *end = strpbrk(field, ",;\t");
+    char *end = strpbrk(field, r->separators);
     *rest = end ? end + 1 : NULL;
     if (end) *end = 0;
     field += strspn(field, " \"\r\n");
@@ -163,17 +164,21 @@ static tobi_status check_unit(const reader *r, char *unit, column c, tobi_error 
 static tobi_status read_header(reader *r, char *line, tobi_error *err)
 {
     char *rest = line;
-    for (char *field; (field = next_field(&rest)) != NULL;) {
+    const char *first = strpbrk(line, r->separators = ",;\t");
+    if (first) r->separators = *first == ',' ? "," : *first == ';' ? ";" : "\t";
+    for (char *field; (field = next_field(r, &rest)) != NULL;) {
         char *unit = split_unit(field);
         if (!*field) return fail_here(r, err, "an empty column name (a comma too many?)", "");
         int found = strcasecmp(field, "t") == 0 ? TIME : COLUMNS;
         for (int c = 0; c < (is_flow(r) ? COLUMNS : SPEED) && found == COLUMNS; c++)
             if (strcasecmp(field, column_names[c]) == 0) found = c;
         if (found == COLUMNS)
-            return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: there is no column \"%s\"; allowed "
-                             "are time (s), x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, "
-                             "pitch, yaw (degrees)", r->what, r->path, (long long)r->line,
-                             tobi_excerpt(field).text);
+            return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: there is no column \"%s\"; allowed are "
+                             "time (s)%s", r->what, r->path, (long long)r->line, tobi_excerpt(field).text,
+                             is_flow(r) ? ", speed (m/s) and flow_rate (m3/s)"
+                             : is_gravity(r) ? ", x, y, z (m/s2)"
+                             : ", x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, pitch, yaw "
+                               "(degrees)");
         if (unit) TOBI_TRY(check_unit(r, unit, found, err));
         if (r->given[found]++) return fail_here(r, err, "a column comes twice: ", column_names[found]);
         r->meaning[r->fields++] = found;      /* no more than COLUMNS, since none comes twice */
@@ -185,14 +190,15 @@ static tobi_status read_numbers(const reader *r, char *line, double value[COLUMN
 {
     char *rest = line, *field;
     int n = 0;
-    for (; (field = next_field(&rest)) != NULL; n++) {
+    for (; (field = next_field(r, &rest)) != NULL; n++) {
         char *end;
         if (n == r->fields) break;
         double x = strtod(field, &end);
         if (end == field || *end || !isfinite(x))
             return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: \"%s\" in column %s is no finite "
-                             "number", r->what, r->path, (long long)r->line, tobi_excerpt(field).text,
-                             column_names[r->meaning[n]]);
+                             "number%s", r->what, r->path, (long long)r->line, tobi_excerpt(field).text,
+                             column_names[r->meaning[n]],
+                             end > field && *end == ',' ? "; decimals follow a point" : "");
         if (fabs(x) > LARGEST)
             return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: %.4g in column %s is too large; allowed "
                              "is up to %g", r->what, r->path, (long long)r->line, x,

@@ -186,6 +186,8 @@ static void bad_files_are_named_with_their_line(void **state)
         {"time,yaw,qw,qx,qy,qz\n0,1,0,0,0,0\n", "given twice"},
         {"time,x\n0,1\n1,two\n", "rows.csv:3: \"two\" in column x"},
         {"time,x\n0,1\n1,nan\n", "rows.csv:3: \"nan\""},
+        {"time;x\n0,0;1,5\n", "rows.csv:2: \"0,0\" in column time is no finite number; decimals follow a "
+         "point"},
         {"time,x\n0,1\n1\n", "rows.csv:3: the row has fewer columns than the header, 2"},
         {"time,x\n0,1,2\n", "more columns"},
         {"time,x\n0,1\n0,2\n", "rows.csv:3: time 0 s does not come after 0 s"},
