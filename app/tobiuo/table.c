@@ -46,21 +46,22 @@ static char *read_whole(const char *path)
 
 /* Cuts one field off *rest, in place: without quotes and the blanks around it. *last says that the
    row ends with it. */
-static char *cut_field(char **rest, int *last)
+static char *cut_field(const table *t, char **rest, int *last)
 {
-    char *from = *rest + strspn(*rest, " \t"), *to = from, *field = from;
+    const char ends[] = { t->separator, '\n', '\0' };
+    char *from = *rest + strspn(*rest, t->separator == '\t' ? " " : " \t"), *to = from, *field = from;
     if (*from == '"') {
         for (from++; *from && (*from != '"' || from[1] == '"'); from++) {
             if (*from == '"') from++;
             *to++ = *from;
         }
-        from += strcspn(from, ",\n");
+        from += strcspn(from, ends);
     } else {
-        from += strcspn(from, ",\n");
+        from += strcspn(from, ends);
         to = from;
         while (to > field && strchr(" \t\r", to[-1])) to--;
     }
-    *last = *from != ',';
+    *last = *from != t->separator;
     *rest = *from ? from + 1 : from;
     *to = '\0';
     return field;
@@ -81,14 +82,26 @@ static char *skip_lines(char *rest)
     return rest;
 }
 
+/* The first one in a row of names, outside of quotes. */
+static char find_separator(const char *row)
+{
+    int quoted = 0;
+    for (; *row && *row != '\n'; row++) {
+        quoted ^= *row == '"';
+        if (!quoted && strchr(",;\t", *row)) return *row;
+    }
+    return ',';
+}
+
 static int read_names(table *t, char **rest)
 {
     t->names = calloc(COLUMN_LIMIT, sizeof *t->names);
     if (!t->names) return complain("out of memory");
+    t->separator = find_separator(*rest);
     for (int last = 0; !last;) {
         if (t->columns == COLUMN_LIMIT)
             return complain("%s has more than %d columns", t->path, COLUMN_LIMIT);
-        t->names[t->columns++] = cut_field(rest, &last);
+        t->names[t->columns++] = cut_field(t, rest, &last);
     }
     return 0;
 }
@@ -106,7 +119,7 @@ static int read_rows(table *t, char *rest)
         char **row = t->cells + t->rows++ * (size_t)t->columns;
         for (int k = 0; k < t->columns; k++) row[k] = "";
         for (int k = 0, last = 0; !last; k++) {
-            char *field = cut_field(&rest, &last);
+            char *field = cut_field(t, &rest, &last);
             if (k < t->columns) row[k] = field;
         }
     }

@@ -1,12 +1,13 @@
 /* A CSV table in memory: history.csv, bodies.csv, and reference data that a scene names.
 
    Lines that begin with # and empty lines are skipped; the next line names the columns; fields may
-   be quoted as RFC 4180 says. */
+   be quoted as RFC 4180 says. The comma, semicolon or tab between the names parts all fields. */
 #pragma once
 #include <stddef.h>
 
 typedef struct table {
     char *path;              /* for messages                                            */
+    char separator;
     int columns;
     size_t rows;
     char **names;            /* one per column                                          */

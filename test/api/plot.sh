@@ -120,6 +120,15 @@ expect 1 "wrong.json:" plot tank --scene wrong.json
 expect 0 "" plot tank --format png
 check "png" cmp -n 8 tank/plots/energies.png <(printf '\211PNG\r\n\032\n')
 
+# Tables from programs that write decimal commas, or tabs.
+sed -i 's/,/;/g; s/"F; N"/"F, N"/' measured.csv
+expect 0 "" plot tank
+check "semicolons" test "$(points tank/plots/compare_wall_force_z.svg)" = 8
+sed -i 's/;/\t/g' measured.csv
+expect 0 "" plot tank
+check "tabs" test "$(points tank/plots/compare_wall_force_z.svg)" = 8
+sed -i 's/\t/,/g' measured.csv
+
 # --- what may be wrong with files -------------------------------------------------------------------
 sed -i 's/t \[ms\]/seconds/' measured.csv
 expect 0 'has no column "t [ms]"; its columns are seconds, F, N, other' plot tank
