@@ -128,12 +128,8 @@ tobi_status tobi_scene_import(const char *old_path, const char *new_path, int fo
     if (!force && access(new_path, F_OK) == 0)
         return tobi_fail(err, TOBI_INVALID, "%s exists; nothing was changed (choose another name, or "
                          "--force to replace it)", new_path);
-    TOBI_TRY(tobi_scene_load(old_path, NULL, &scene, report, err));
-    tobi_status status = TOBI_OK;
-    if (!scene->import_table)
-        status = tobi_fail(err, TOBI_INVALID, "%s is a native scene already: it has neither Configuration "
-                           "nor input_files", old_path);
-    if (status == TOBI_OK) status = write_scene(scene, old_path, new_path, table, err);
+    TOBI_TRY(tobi_scene_load_foreign(old_path, &scene, report, err));
+    const tobi_status status = write_scene(scene, old_path, new_path, table, err);
     if (status != TOBI_OK) {
         free(*table);
         *table = NULL;

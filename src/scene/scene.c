@@ -320,15 +320,17 @@ static tobi_status parse_source(tobi_scene *scene, tobi_source *source,
     return status == TOBI_NO_MEMORY ? tobi_fail(err, status, "no memory for the scene") : status;
 }
 
-tobi_status tobi_scene_parse(const char *path, const char *text, size_t size,
-                             const char *const *overrides, tobi_scene **out,
-                             tobi_report **report_out, tobi_error *err)
+static int is_native(const tobi_source *source)
 {
-    TOBI_NEED(out, "where the scene goes");
+    return !source->python && !tobi_import_applies(source->root) && !tobi_import_tank_applies(source->root);
+}
+
+/* foreign: 1 takes only scenes of other programs. */
+static tobi_status parse(const char *path, const char *text, size_t size, const char *const *overrides,
+                         int foreign, tobi_scene **out, tobi_report **report_out, tobi_error *err)
+{
     *out = NULL;
     if (report_out) *report_out = NULL;
-    TOBI_NEED(path, "the name");
-    TOBI_NEED(text || size == 0, "the text");
     if (size > TOBI_SOURCE_LIMIT)
         return tobi_fail(err, TOBI_INVALID, "%s: %zu bytes of scene, allowed are %d", path, size,
                          (int)TOBI_SOURCE_LIMIT);
@@ -339,6 +341,11 @@ tobi_status tobi_scene_parse(const char *path, const char *text, size_t size,
     tobi_status status = TOBI_NO_MEMORY;
     if (!scene || !report || !scene->name) tobi_fail(err, status, "no memory for the scene");
     else status = tobi_source_parse(&scene->source, path, text, size, report, err);
+    if (status == TOBI_OK && foreign && is_native(&scene->source)) {
+        tobi_report_add(report, 0, "%s is a native scene already, or none: it has neither Configuration nor "
+                        "input_files, the marks of those that can be imported", path);
+        status = TOBI_INVALID;
+    }
     if (status == TOBI_OK) status = parse_source(scene, &scene->source, overrides, err);
     if (status == TOBI_INVALID) {
         tobi_report_close(report);
@@ -355,19 +362,43 @@ tobi_status tobi_scene_parse(const char *path, const char *text, size_t size,
     return status;
 }
 
-tobi_status tobi_scene_load(const char *path, const char *const *overrides, tobi_scene **scene,
-                            tobi_report **report, tobi_error *err)
+tobi_status tobi_scene_parse(const char *name, const char *text, size_t size, const char *const *overrides,
+                             tobi_scene **scene, tobi_report **report, tobi_error *err)
 {
-    char *text;
-    size_t size;
     TOBI_NEED(scene, "where the scene goes");
     *scene = NULL;
     if (report) *report = NULL;
-    TOBI_NEED(path, "the path");
+    TOBI_NEED(name, "the name");
+    TOBI_NEED(text || size == 0, "the text");
+    return parse(name, text, size, overrides, 0, scene, report, err);
+}
+
+static tobi_status load(const char *path, const char *const *overrides, int foreign, tobi_scene **scene,
+                        tobi_report **report, tobi_error *err)
+{
+    char *text;
+    size_t size;
+    *scene = NULL;
+    if (report) *report = NULL;
     TOBI_TRY(tobi_plain_read(path, "scene", TOBI_SOURCE_LIMIT, &text, &size, err));
-    tobi_status status = tobi_scene_parse(path, text, size, overrides, scene, report, err);
+    tobi_status status = parse(path, text, size, overrides, foreign, scene, report, err);
     free(text);
     return status;
+}
+
+tobi_status tobi_scene_load(const char *path, const char *const *overrides, tobi_scene **scene,
+                            tobi_report **report, tobi_error *err)
+{
+    TOBI_NEED(scene, "where the scene goes");
+    *scene = NULL;
+    TOBI_NEED(path, "the path");
+    return load(path, overrides, 0, scene, report, err);
+}
+
+tobi_status tobi_scene_load_foreign(const char *path, tobi_scene **scene, tobi_report **report,
+                                    tobi_error *err)
+{
+    return load(path, NULL, 1, scene, report, err);
 }
 
 static void free_fills(tobi_scene_fill *fills, int count)

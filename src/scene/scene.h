@@ -82,6 +82,9 @@ struct tobi_scene {
 
 /* The absolute directory of a file that may not exist; owned by the caller. */
 char *tobi_scene_find_directory(const char *path);
+/* tobi_scene_load of a scene of another program; TOBI_INVALID if it is none. */
+tobi_status tobi_scene_load_foreign(const char *path, tobi_scene **scene, tobi_report **report,
+                                    tobi_error *err);
 
 /* scene.c: whether solids stand beside fluids, which have another method. */
 #define TOBI_METHOD_OF_SOLIDS "mlsmpm"

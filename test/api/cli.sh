@@ -351,6 +351,9 @@ mkfifo fifo && ln -s new.json link      # like a device: what is no plain file i
 expect 1 "it is a FIFO" import "$old/rigid_blocks.json" --out fifo --force --quiet
 expect 1 "it is a symbolic link" import "$old/rigid_blocks.json" --out link --force --quiet
 expect 1 "native scene already" import new.json --out newer.json
+echo '{}' > nothing.json
+expect 1 "native scene already, or none" import nothing.json --out newer.json
+check "and nothing else" test "$(wc -l < err.txt)" = 1
 expect 1 "nowhere.json" import nowhere.json --out newer.json
 expect 0 "" run new.json --quiet --out imported
 check "an imported scene gives the same results" same_results old imported
