@@ -17,7 +17,8 @@ const char *bytes_text(double bytes, char *buffer)
     return buffer;
 }
 
-/* Bytes that are free where dir is or will be; infinite if that cannot be found out. */
+/* Bytes that are free where dir is or will be; infinite if that cannot be found out, or if nothing can be
+   written there anyway, which the one who writes tells. */
 static double free_bytes(const char *dir)
 {
     struct statvfs disk;
@@ -27,7 +28,8 @@ static double free_bytes(const char *dir)
         if ((end = strrchr(path, '/'))) end[end == path] = '\0';
         else strcpy(path, ".");
     }
-    const int known = path && statvfs(path, &disk) == 0 && disk.f_blocks > 0;      /* /proc has none */
+    const int known = path && statvfs(path, &disk) == 0 && disk.f_blocks > 0 &&    /* /proc has none */
+                      !(disk.f_flag & ST_RDONLY);
     const double bytes = known ? (double)disk.f_bavail * (double)disk.f_frsize : INFINITY;
     free(path);
     return bytes;

@@ -311,6 +311,14 @@ expect 0 "" run tank.json --quiet --out by_link --until 0.01
 check "a link to the directory itself is followed" test -s strange/history.csv
 mkdir locked && chmod a-w locked
 if [ ! -w locked ]; then expect 1 "cannot" run tank.json --quiet --out locked/here; fi
+# A disk that cannot be written to: that is told, not how much of it is free.
+mkdir fixed
+if unshare -rm mount -t tmpfs -o ro,size=16k none fixed 2> err.txt; then
+    unshare -rm sh -c 'mount -t tmpfs -o ro,size=16k none fixed && exec "$0" run tank.json --out fixed/here' \
+        "$program" > out.txt 2> err.txt
+    check "a disk that is read-only is told" grep -q "Read-only file system" err.txt
+fi
+
 # A full disk, played by a limit on the size of files.
 got=0
 (trap '' XFSZ; ulimit -f 24; exec "$program" run tank.json --quiet --out full) > out.txt 2> err.txt || got=$?
