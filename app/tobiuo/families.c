@@ -258,15 +258,19 @@ static void write_impact(const family_choice *c, FILE *out)
 
 static const family_option slosh_options[] = {
     SPACING(0.02), UNTIL(4), TANK(0.9, 0.1, 0.5), LENGTH("depth", 0.2, "of the water"),
-    { "angle", "degrees", 4, -45, 45, "of the tank about y", 0 },
-    { "period", "s", 0, 0, 1e5, "of its turns to and fro; 0: tilted at once, and kept", 0 }, { 0 } };
+    { "angle", "degrees", 4, -45, 45, "that the end at --length is lowered by, first", 0 },
+    { "period", "s", 0, 0, 1e5, "of its turns, which grow for a fifth of it; 0: tilted at once", 0 },
+    { 0 } };
 
-/* The turn to and fro as a frame: the tank stands still, gravity and inertia turn. */
+/* The turn to and fro as a frame: the tank stands still, gravity and inertia turn. A positive angle lowers
+   the far end first: about y in 3-D, against z in 2-D, where y is up. */
 static void put_frame(const family_choice *c, FILE *out, const double size[3])
 {
     if (!(chosen(c, "period") > 0)) return;
-    fprintf(out, "  \"frame\": { \"%s\": { \"amplitude\": %.10g, \"period\": %.10g, \"centre\": ",
-            c->dimension == 2 ? "yaw" : "pitch", chosen(c, "angle"), chosen(c, "period"));
+    const int flat = c->dimension == 2;
+    fprintf(out, "  \"frame\": { \"%s\": { \"amplitude\": %.10g, \"period\": %.10g, \"ramp\": %.10g,\n"
+            "    \"centre\": ", flat ? "yaw" : "pitch", flat ? -chosen(c, "angle") : chosen(c, "angle"),
+            chosen(c, "period"), chosen(c, "period")/5);
     put_place(c, out, size[0]/2, size[1]/2, 0);
     fputs(" } },\n", out);
 }
@@ -318,7 +322,7 @@ static void write_wave(const family_choice *c, FILE *out)
     fprintf(out, " },\n      \"motion\": { \"piston\": { \"depth\": %.10g, ", depth);
     if (chosen(c, "period") > 0)
         fprintf(out, "\"regular\": { \"height\": %.10g, \"period\": %.10g }, \"ramp\": %.10g } } }\n  ],\n",
-                chosen(c, "wave-height"), chosen(c, "period"), chosen(c, "period"));
+                chosen(c, "wave-height"), chosen(c, "period"), chosen(c, "period")/5);
     else
         fprintf(out, "\"solitary\": { \"height\": %.10g } } } }\n  ],\n", chosen(c, "wave-height"));
     fputs("  \"probes\": [", out);

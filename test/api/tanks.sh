@@ -56,6 +56,14 @@ for more in "sloshing --period 1.4" "sloshing --dimension 2 --period 1.4" "wave_
     expect 0 "" run more --quiet --until 0.02 --force --out out_more
     rm -rf more
 done
+# The far end goes down first in both dimensions: the water rises there.
+for dimension in 2 3; do
+    expect 0 "" new sloshing --period 1.4 --spacing 0.05 --dimension $dimension more
+    expect 0 "" run more --quiet --until 0.5 --force --out out_more
+    check "the far end is lowered in $dimension-D" awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) at[$k] = k }
+        END { exit !($at["right_level [m]"] > $at["left_level [m]"]) }' out_more/probes.csv
+    rm -rf more
+done
 expect 1 "the water reaches the box" new wave_impact --water-length 2.5
 expect 1 "static_pressure: spacing: is 10 m, the domain has only 0.2 m in x" new static_pressure --spacing 10
 expect 2 "--width: a 2-D scene has no width; leave it out" new dam_break --dimension 2 --width 0.3 flat_wide
