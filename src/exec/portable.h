@@ -61,6 +61,7 @@ TOBI_FN lane lane_positive(lane a) { return a > 0 ? a : 0; }
 TOBI_FN lane lane_where_equal(lane_int a, lane_int b, lane t, lane f) { return a == b ? t : f; }
 TOBI_FN lane_int lane_to_int(lane a) { return (int32_t)a; }
 TOBI_FN lane lane_where_less(lane a, lane b, lane t, lane f) { return a < b ? t : f; }
+TOBI_FN unsigned lane_mask_less(lane a, lane b) { return a < b; }
 TOBI_FN lane lane_from_bits(lane_int a)
 {
     lane x;
@@ -229,6 +230,18 @@ TOBI_FN lane lane_where_less(lane a, lane b, lane t, lane f)
 {
     lane_int m = lane_less_(a, b);
     return (lane)(((lane_int)t & m) | ((lane_int)f & ~m));
+}
+/* Bit k: a < b in element k. */
+TOBI_FN unsigned lane_mask_less(lane a, lane b)
+{
+    const lane_int m = lane_less_(a, b);
+#if defined(__AVX__)
+    return (unsigned)_mm256_movemask_ps((__m256)m);
+#else
+    unsigned bits = 0;
+    for (int k = 0; k < 8; k++) bits |= (unsigned)(m[k] & 1) << k;
+    return bits;
+#endif
 }
 TOBI_FN lane lane_from_bits(lane_int a) { return (lane)a; }
 TOBI_FN lane_int lane_bits(lane a) { return (lane_int)a; }

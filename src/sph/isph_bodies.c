@@ -3,6 +3,7 @@
    edges and tips from faces. Drawback: room for all planes of a corner for every particle beside a body that
    is not convex. */
 #include "sph/isph_bodies.h"
+#include "sph/isph_body_pairs.k.h"
 #include "sph/isph_body_sides.h"
 #include "sph/isph_corners.h"
 #include "sph/state.h"
@@ -62,6 +63,12 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *l
 
 typedef struct mirrors { isph_solver *m; const tobi_system *s; double dt; } mirrors;
 
+static void make_briefs(const void *view, int64_t begin, int64_t end)
+{
+    const isph_solver *m = ((const mirrors *)view)->m;
+    for (int64_t k = begin; k < end; k++) isph_make_brief(&m->mirror[k], &m->brief[k + 1]);
+}
+
 static void make_mirrors(const void *view, int64_t begin, int64_t end)
 {
     const mirrors *all = view;
@@ -110,6 +117,10 @@ static tobi_status reserve_mirrors(isph_solver *m, int64_t need, tobi_error *err
     int64_t *first = more ? tobi_array_grow(m->view.first_group, 0, room, sizeof *first) : NULL;
     if (!first) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld mirrors", (long long)room);
     m->view.first_group = first;
+    isph_brief *brief = tobi_array_grow(m->brief, 0, room + 1, sizeof *brief);
+    if (!brief) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld mirrors", (long long)room);
+    brief[0] = (isph_brief){ .body = -1 };
+    m->view.brief = m->brief = brief;
     m->mirrors = room;
     return TOBI_OK;
 }
@@ -141,11 +152,13 @@ tobi_status isph_bodies_find_mirrors(isph_solver *m, tobi_system *s, tobi_error 
     if (!v->last_link) return TOBI_OK;
     m->corners = 0;
     for (int b = 0; b < s->sim->body_count; b++) m->corners |= !s->sim->bodies[b].convex;
-    TOBI_TRY(reserve_mirrors(m, n->count*(m->corners ? s->box.dimension : 1), err));
+    const int64_t rows = n->count*(m->corners ? s->box.dimension : 1);
+    TOBI_TRY(reserve_mirrors(m, rows, err));
     v->mirror = m->mirror;
     const mirrors all = { m, s, 0 };
     tobi_loop(s->sim->exec.threads, n->count, 0, make_mirrors, &all);
     tobi_loop(s->sim->exec.threads, n->count, 0, add_shares, &all);
+    tobi_loop(s->sim->exec.threads, rows, 0, make_briefs, &all);
     return list_images(m, err);
 }
 

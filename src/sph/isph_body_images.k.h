@@ -1,239 +1,177 @@
 /* Images of pairs at bodies, in the mean of the planes at the points of the surface that are closest to
    either particle: exact at flat faces, rounded at edges. In a concave corner of one body also images in two
    or three of its faces at once. Images at two bodies at once are left out. They are made once for all loops
-   of a step, and again where bodies change their velocity within it.
-   Drawback: pairs are made one at a time; what is made takes some 50 bytes an image. */
+   of a step, and again where bodies change their velocity within it. Those in one plane are made many at a
+   time. Drawback: what is made takes some 50 bytes an image; those in corners are made one at a time. */
 #pragma once
-#include "sph/isph_images.k.h"
+#include "sph/isph_body_planes.k.h"
 
-/* Of the square of the support: what is farther is out of reach whatever the rounding. */
-#define ISPH_REACH 1.0001
-
-enum {
-    ISPH_PLANES = 6,                 /* that a pair sees at once                                    */
-    ISPH_FACES = 3,                  /* that an image is in at once                                 */
-    ISPH_IMAGES = 16                 /* of a pair: in planes, and in several of them at once        */
-};
-
-/* The mirror of a pair at one body. */
-typedef struct isph_plane {
-    int32_t mirror[2];               /* of i and of j                                               */
-    double normal[3];
-    double size;                     /* 1: square of the normal before its length is one            */
-    double sum[3];                   /* m, of the offsets of both particles                         */
-    double weight;
-    int reaches, meets;              /* 1: its image may be within reach, so may one in others too  */
-} isph_plane;
-
-/* One particle's images at bodies: where the walk is, and the group at hand. */
-typedef struct isph_walk {
-    const isph_view *v;
-    isph_reflections reflections;
-    int64_t i, first;
-    int k, groups;                   /* the next of the list; before all others i itself            */
-    double offset[3];                /* m, x_i - x_j                                                */
-    isph_plane plane[ISPH_PLANES];
-    int planes;                      /* of the pair                                                 */
-    int face[ISPH_IMAGES][ISPH_FACES], images;       /* the planes of each, -1: none                */
-    int at, reflection;              /* the image that comes next                                   */
-    double whole[ISPH_IMAGES];       /* 1: how much there is of one in several planes               */
-    int used;                        /* images in the group                                         */
-    isph_image_group group;          /* at hand                                                     */
-    isph_image_rest rest;            /* of it                                                       */
-} isph_walk;
-
-/* Two faces of a corner that is concave; offset: of the pair. */
-TOBI_FN int isph_faces_apart(const isph_mirror *a, const isph_mirror *b, const double offset[3])
-{
-    double turn = 0, hollow = 0;
-    for (int c = 0; c < 3; c++) {
-        turn += a->normal[c]*b->normal[c];
-        hollow += (a->offset[c] - b->offset[c] - offset[c])*(a->normal[c] - b->normal[c]);
-    }
-    return turn < ISPH_TWO_FACES && hollow > 0;
-}
-
-/* Where both share of the body is below a half there is next to none between a particle and the image. 0: the
-   surface turns by 120 degrees or more, or there is no body. */
-TOBI_FN int isph_find_plane(const isph_view *v, int32_t own, int32_t other, isph_plane *p)
-{
-    const isph_mirror *a = &v->mirror[own], *b = &v->mirror[other];
-    const double both = a->share + b->share - 0.5;
-    p->size = 0;
-    p->mirror[0] = own;
-    p->mirror[1] = other;
-    p->weight = both < 0 ? 0 : both < 1 ? both : 1;
-    for (int c = 0; c < 3; c++) {
-        p->normal[c] = a->normal[c] + b->normal[c];
-        p->sum[c] = a->offset[c] + b->offset[c];
-        p->size += p->normal[c]*p->normal[c];
-    }
-    return p->size > 1 && p->weight > 0;
-}
-
-TOBI_FN void isph_normalise_plane(isph_plane *p)
-{
-    for (int c = 0; c < 3; c++) p->normal[c] /= sqrt(p->size);
-}
-
-/* m/s: of the plane along a direction, and its change. */
-TOBI_FN void isph_plane_speed(const isph_view *v, const isph_plane *p, const double along[3], double speed[2])
-{
-    const isph_mirror *a = &v->mirror[p->mirror[0]], *b = &v->mirror[p->mirror[1]];
-    speed[0] = speed[1] = 0;
-    for (int c = 0; c < 3; c++) {
-        speed[0] += 0.5*(a->velocity[c] + b->velocity[c])*along[c];
-        speed[1] += 0.5*(a->velocity_change[c] + b->velocity_change[c])*along[c];
-    }
-}
-
-/* Most images are out of reach, which is told before roots are drawn: in one plane r^2 = o^2 + 4 s_i s_j; in
-   several an image is no nearer than s_i + s_j of each, and both particles stand before all of them. */
-TOBI_FN void isph_find_reach(const isph_walk *w, isph_plane *p)
-{
-    const double far2 = ISPH_REACH*w->v->h*w->v->h, before = -1e-6*w->v->h;
-    double own = 0, other = 0, both = 0, square = 0;
-    p->reaches = p->meets = 1;
-    if (w->reflections.total != 1) return;
-    for (int a = 0; a < 3; a++) {
-        own += (p->sum[a] + w->offset[a])*p->normal[a];
-        other += (p->sum[a] - w->offset[a])*p->normal[a];
-        both += p->sum[a]*p->normal[a];
-        square += w->offset[a]*w->offset[a];
-    }
-    if (own < before || other < before) p->reaches = p->meets = 0;
-    if ((square - far2)*p->size + own*other > 0) p->reaches = 0;
-    if (both*both > far2*p->size) p->meets = 0;
-}
-
-/* How much of the image in both of two faces there is: all of it in a corner of at most 90 degrees; images in
-   either face fill one of 120. Faces turn by at least 60 degrees. */
-TOBI_FN double isph_planes_meet(const isph_walk *w, int p, int q)
-{
-    const isph_plane *a = &w->plane[p], *b = &w->plane[q];
-    double c = 0, before = 0, behind = 0;            /* either face, as seen from the other */
-    for (int x = 0; x < 3; x++) {
-        c += a->normal[x]*b->normal[x];
-        before += (b->sum[x] - a->sum[x])*b->normal[x];
-        behind += (a->sum[x] - b->sum[x])*a->normal[x];
-    }
-    const double least = 0.2*w->v->spacing;
-    if (!a->meets || !b->meets) return 0;
-    if (fabs(c) >= ISPH_TWO_FACES || before < least || behind < least) return 0;
-    const double whole = 2*M_PI/acos(-c) - 3;
-    return whole < 1 ? whole : 1;
-}
-
-/* Images of the pair: in each plane; where faces of a body meet, in two and three at once too. */
-TOBI_FN void isph_walk_list_images(isph_walk *w)
-{
-    int (*f)[ISPH_FACES] = w->face, meeting = 0;
-    w->images = w->at = w->reflection = 0;
-    for (int p = 0; p < w->planes; p++) {
-        isph_find_reach(w, &w->plane[p]);
-        meeting += w->plane[p].meets;
-    }
-    for (int p = 0; p < w->planes; p++) {
-        if (w->plane[p].reaches || meeting > 1) isph_normalise_plane(&w->plane[p]);
-        if (!w->plane[p].reaches) continue;
-        f[w->images][0] = p;
-        f[w->images][1] = f[w->images][2] = -1;
-        w->images++;
-    }
-    for (int p = 0; p < w->planes && meeting > 1; p++)
-        for (int q = p + 1; q < w->planes; q++) {
-            const double both = isph_planes_meet(w, p, q);
-            if (!(both > 0)) continue;
-            for (int r = q; r < w->planes && w->images < ISPH_IMAGES; r++) {
-                const double whole = r == q ? both : both*isph_planes_meet(w, p, r)*isph_planes_meet(w, q, r);
-                if (!(whole > 0)) continue;
-                w->whole[w->images] = whole;
-                f[w->images][0] = p;
-                f[w->images][1] = q;
-                f[w->images][2] = r > q ? r : -1;
-                w->images++;
-            }
-        }
-}
-
-/* The pair of i and j: its offset, and its mirrors. */
-TOBI_FN void isph_walk_load_pair(isph_walk *w, int64_t j)
+TOBI_FN void isph_walk_find_offset(isph_walk *w, int64_t j)
 {
     const isph_view *v = w->v;
-    w->planes = 0;
     for (int a = 0; a < 3; a++) {
         double x = (&v->position[w->i].x)[a] - (&v->position[j].x)[a];
         if (v->periodic[a]) x -= x > 0.5*v->size[a] ? v->size[a] : x < -0.5*v->size[a] ? -v->size[a] : 0;
         w->offset[a] = x;
     }
-    for (int32_t a = v->last_link[w->i]; a >= 0; a = v->mirror[a].previous)
-        for (int32_t b = v->last_link[j]; b >= 0; b = v->mirror[b].previous)
-            if (v->mirror[a].body == v->mirror[b].body && w->planes < ISPH_PLANES &&
-                !isph_faces_apart(&v->mirror[a], &v->mirror[b], w->offset))
-                w->planes += isph_find_plane(v, a, b, &w->plane[w->planes]);
-    isph_walk_list_images(w);
 }
 
-TOBI_FN void isph_walk_begin(isph_walk *w, const isph_view *v, int64_t i)
-{
-    w->v = v;
-    w->i = i;
-    w->reflections = isph_find_reflections(v, i);
-    w->first = 8*(int64_t)v->list_start[i];
-    w->groups = 8*v->list_groups[i];
-    w->k = 0;
-    isph_walk_load_pair(w, i);
-}
-
-/* What sides leave of the normal; 0: next to nothing. */
-TOBI_FN int isph_plane_along(const isph_plane *p, const int sided[3], double normal[3])
-{
-    double size = 0;
-    for (int a = 0; a < 3; a++) {
-        normal[a] = sided[a] ? 0 : p->normal[a];
-        size += normal[a]*normal[a];
-    }
-    if (size < 0.9) return 0;
-    for (int a = 0; a < 3; a++) normal[a] /= sqrt(size);
-    return 1;
-}
-
-/* The image at sides, once more mirrored at a body: only where the two stand across one another. Symmetric:
-   r^2 + 4 s_i s_j with the distances of both from the plane. */
-TOBI_FN void isph_walk_add_image(isph_walk *w, const isph_plane *b, const int side[3])
+/* The mirrors of the pair of i and j. */
+TOBI_FN void isph_walk_find_planes(isph_walk *w, int64_t j)
 {
     const isph_view *v = w->v;
+    const isph_brief *m = v->brief;
+    w->planes = 0;
+    for (int32_t a = v->last_link[w->i] + 1; a > 0; a = m[a].previous)
+        for (int32_t b = v->last_link[j] + 1; b > 0; b = m[b].previous)
+            if (m[a].body == m[b].body && w->planes < ISPH_PLANES &&
+                !isph_faces_apart(&v->mirror[a - 1], &v->mirror[b - 1], w->offset))
+                w->planes += isph_find_plane(v, a - 1, b - 1, &w->plane[w->planes]);
+}
+
+TOBI_FN int isph_places(const isph_image_group *g) { return g->sided || g->corners ? 2 : 1; }
+
+/* What is missing in the group at hand is out of reach. */
+TOBI_FN void isph_walk_pad(isph_walk *w)
+{
     isph_image_group *g = &w->group;
-    const int k = w->used, sided[3] = { side[0] >= 0, side[1] >= 0, side[2] >= 0 };
-    double x[3], normal[3], speed[2], own = 0, other = 0, r2 = 0;
-    if (!isph_plane_along(b, sided, normal)) return;
-    for (int a = 0; a < 3; a++) {
-        const double wall = side[a] == 1 ? v->size[a] : 0;
-        x[a] = side[a] < 0 ? w->offset[a] : 2*((&v->position[w->i].x)[a] - wall) - w->offset[a];
-        own += 0.5*(b->sum[a] + w->offset[a])*normal[a];
-        other += 0.5*(b->sum[a] - w->offset[a])*normal[a];
+    for (int k = w->used; k < 8; k++) {
+        g->neighbor[k] = g->mirror[0][k] = -1;
+        g->x[0][k] = 2*(float)w->v->h;
+        g->x[1][k] = g->x[2][k] = g->normal_velocity[k] = g->velocity_change[k] = g->weight[k] = 0;
+        for (int a = 0; a < 3; a++) {
+            g->displacement[a][k] = w->rest.sign[a][k] = g->normal[a][k] = 0;
+            w->rest.velocity[a][k] = w->rest.change[a][k] = 0;
+        }
     }
-    if (!(own > 0) || !(other > 0)) return;
-    for (int a = 0; a < 3; a++) {
-        x[a] += 2*other*normal[a];
-        r2 += x[a]*x[a];
+}
+
+/* The group at hand goes to its place, and a new one begins. Those beyond the room are counted, and lost. */
+TOBI_FN void isph_walk_put(isph_walk *w)
+{
+    const isph_view *v = w->v;
+    const int places = isph_places(&w->group);
+    const int64_t g = w->to ? tobi_fetch_add(v->group_count, places) : w->next;
+    isph_walk_pad(w);
+    w->used = 0;
+    if (g >= 0 && g + places <= v->group_room) {
+        if (w->to) *w->to = g;
+        else w->group.next = w->next = v->group[g].images.next;
+        v->group[g].images = w->group;
+        if (places > 1) v->group[g + 1].rest = w->rest;
+        if (w->to) w->to = &v->group[g].images.next;
     }
-    if (r2 >= v->h*v->h) return;
-    isph_plane_speed(v, b, normal, speed);
+    w->group.corners = w->group.sided = 0;
+}
+
+/* Image k of the batch. */
+TOBI_FN void isph_walk_add_image(isph_walk *w, int k)
+{
+    const isph_batch *b = &w->batch;
+    isph_image_group *g = &w->group;
+    const int32_t mirror[2] = { b->mirror[0][k], b->mirror[1][k] };
+    const double normal[3] = { b->normal[0][k], b->normal[1][k], b->normal[2][k] };
+    const int to = w->used++;
+    double speed[2];
+    isph_plane_speed(w->v, mirror, normal, speed);
     for (int a = 0; a < 3; a++) {
-        g->x[a][k] = (float)x[a];
-        g->displacement[a][k] = (float)(w->offset[a] - x[a]);
-        w->rest.sign[a][k] = side[a] < 0 ? 1 : -1;
-        g->normal[a][k] = (float)normal[a];
-        w->rest.velocity[a][k] = w->rest.change[a][k] = 0;
+        const int sided = !(b->along[a][k] > 0);
+        g->x[a][to] = (float)b->x[a][k];
+        g->displacement[a][to] = (float)(b->offset[a][k] - b->x[a][k]);
+        w->rest.sign[a][to] = sided ? -1 : 1;
+        g->normal[a][to] = (float)normal[a];
+        w->rest.velocity[a][to] = w->rest.change[a][to] = 0;
+        g->sided |= sided;
     }
-    g->normal_velocity[k] = (float)speed[0];
-    g->velocity_change[k] = (float)speed[1];
-    g->weight[k] = (float)b->weight;
-    for (int e = 0; e < 2; e++) g->mirror[e][k] = b->mirror[e];
-    g->neighbor[k] = w->k - 1;
-    g->sided |= sided[0] | sided[1] | sided[2];
-    w->used++;
+    g->normal_velocity[to] = (float)speed[0];
+    g->velocity_change[to] = (float)speed[1];
+    g->weight[to] = b->weight[k];
+    for (int e = 0; e < 2; e++) g->mirror[e][to] = mirror[e];
+    g->neighbor[to] = b->pair[k];
+    if (w->used == TOBI_LANES) isph_walk_put(w);
+}
+
+/* The normal of a plane from the sum of two and its square: of length 1, and along sides only. Returns the
+   square of what they leave of it. */
+TOBI_FN double isph_find_normal(const double sum[3], double square, const double along[3], double n[3])
+{
+    const double length = sqrt(square);
+    double left = 0;
+    for (int a = 0; a < 3; a++) {
+        n[a] = along[a] > 0 ? sum[a]/length : 0;
+        left += n[a]*n[a];
+    }
+    const double size = sqrt(left);
+    for (int a = 0; a < 3; a++) n[a] /= size;
+    return left;
+}
+
+/* The images at sides, once more mirrored at a body: only where the two stand across one another. Symmetric:
+   r^2 + 4 s_i s_j with the distances of both from the plane. */
+TOBI_FN void isph_make_batch(isph_batch *b, double h)
+{
+    const double far2 = h*h;
+    for (int k = 0; k < b->count; k++) {
+        const double sum[3] = { b->normal[0][k], b->normal[1][k], b->normal[2][k] };
+        const double along[3] = { b->along[0][k], b->along[1][k], b->along[2][k] };
+        double n[3], x[3], own = 0, other = 0, r2 = 0;
+        const double left = isph_find_normal(sum, b->size[k], along, n);
+        for (int a = 0; a < 3; a++) {
+            own += 0.5*(b->sum[a][k] + b->offset[a][k])*n[a];
+            other += 0.5*(b->sum[a][k] - b->offset[a][k])*n[a];
+        }
+        for (int a = 0; a < 3; a++) {
+            x[a] = b->x[a][k] + 2*other*n[a];
+            r2 += x[a]*x[a];
+            b->normal[a][k] = n[a];
+            b->x[a][k] = x[a];
+        }
+        b->reaches[k] = (left >= 0.9) & (own > 0) & (other > 0) & (r2 < far2) ? 1 : 0;
+    }
+}
+
+TOBI_RARE_FN void isph_walk_empty_batch(isph_walk *w)
+{
+    isph_make_batch(&w->batch, w->v->h);
+    for (int k = 0; k < w->batch.count; k++)
+        if (w->batch.reaches[k] > 0) isph_walk_add_image(w, k);
+    w->batch.count = 0;
+}
+
+/* The image in a plane and in these sides, if any, to the batch. That in sides alone is no farther. */
+TOBI_FN void isph_walk_list_image(isph_walk *w, const isph_plane *p, const int side[3])
+{
+    isph_batch *b = &w->batch;
+    double x[3], square = 0;
+    for (int a = 0; a < 3; a++) {
+        const double wall = side[a] == 1 ? w->v->size[a] : 0;
+        x[a] = side[a] < 0 ? w->offset[a] : 2*((&w->v->position[w->i].x)[a] - wall) - w->offset[a];
+        square += x[a]*x[a];
+    }
+    if (square > ISPH_REACH*w->v->h*w->v->h) return;
+    if (b->count == ISPH_BATCH) isph_walk_empty_batch(w);
+    const int k = b->count++;
+    for (int a = 0; a < 3; a++) {
+        b->normal[a][k] = p->normal[a];
+        b->sum[a][k] = p->sum[a];
+        b->offset[a][k] = w->offset[a];
+        b->x[a][k] = x[a];
+        b->along[a][k] = side[a] < 0;
+    }
+    b->size[k] = p->size;
+    b->weight[k] = (float)p->weight;
+    for (int e = 0; e < 2; e++) b->mirror[e][k] = p->mirror[e];
+    b->pair[k] = w->pair;
+}
+
+/* Those of the pair in planes and in sides. */
+TOBI_FN void isph_walk_list_plane(isph_walk *w, const isph_plane *p)
+{
+    for (int f = 0; f < w->reflections.total; f++) {
+        int side[3] = { -1, -1, -1 };
+        if (f > 0) isph_choose_sides(&w->reflections, f, side);
+        isph_walk_list_image(w, p, side);
+    }
 }
 
 /* Along the sides nothing of a normal is left; 0: it lies across them. */
@@ -275,6 +213,21 @@ typedef struct isph_corner {
     double weight;
 } isph_corner;
 
+/* Whether the particles stand before the plane, as sides leave it, and the image is not out of reach: it is
+   no nearer than their distances from it together. Told before roots are drawn. */
+TOBI_FN int isph_face_may_reach(const isph_walk *w, const isph_plane *p, const int side[3])
+{
+    const double h = w->v->h, before = -1e-6*h;
+    double own = 0, other = 0, size = 0;
+    for (int a = 0; a < 3; a++) {
+        const double n = side[a] < 0 ? p->normal[a] : 0;
+        own += 0.5*(p->sum[a] + w->offset[a])*n;
+        other += 0.5*(p->sum[a] - w->offset[a])*n;
+        size += n*n;
+    }
+    return size >= 0.9 && own > before && other > before && (own + other)*(own + other) < ISPH_REACH*h*h*size;
+}
+
 /* 0: the particles do not stand before the plane, or it lies across a side. */
 TOBI_FN int isph_corner_add_face(isph_corner *c, const isph_walk *w, const isph_plane *p, const int side[3])
 {
@@ -284,7 +237,7 @@ TOBI_FN int isph_corner_add_face(isph_corner *c, const isph_walk *w, const isph_
         own += 0.5*(p->sum[a] + w->offset[a])*n[a];
         other += 0.5*(p->sum[a] - w->offset[a])*n[a];
     }
-    isph_plane_speed(w->v, p, n, speed);
+    isph_plane_speed(w->v, p->mirror, n, speed);
     c->moved[c->faces] = speed[0];
     c->change[c->faces] = speed[1];
     c->at[c->faces++] = own + other;
@@ -321,6 +274,8 @@ TOBI_FN void isph_walk_add_corner(isph_walk *w, const int face[ISPH_FACES], doub
     c.weight = whole;
     c.at[2] = c.moved[2] = c.change[2] = 0;
     for (int f = 0; f < faces; f++)
+        if (!isph_face_may_reach(w, &w->plane[face[f]], side)) return;
+    for (int f = 0; f < faces; f++)
         if (!isph_corner_add_face(&c, w, &w->plane[face[f]], side)) return;
     if (!isph_corner_close(&c, w, side)) return;
     isph_compose(c.normal, c.at, x);
@@ -338,48 +293,72 @@ TOBI_FN void isph_walk_add_corner(isph_walk *w, const int face[ISPH_FACES], doub
     }
     g->normal_velocity[k] = g->velocity_change[k] = 0;
     g->weight[k] = (float)c.weight;
-    g->neighbor[k] = w->k - 1;
+    g->neighbor[k] = w->pair;
     g->corners = 1;
-    w->used++;
+    if (++w->used == TOBI_LANES) isph_walk_put(w);
 }
 
-/* The next group; 0: there is none. */
-TOBI_FN int isph_walk_fill(isph_walk *w)
+/* The images of the pair at hand. */
+TOBI_RARE_FN void isph_walk_take_pair(isph_walk *w, int64_t j)
 {
-    w->used = w->group.corners = w->group.sided = 0;
-    for (;;) {
-        while (w->at < w->images && w->used < TOBI_LANES) {
-            const int *face = w->face[w->at];
+    isph_walk_find_offset(w, j);
+    isph_walk_find_planes(w, j);
+    isph_walk_list_images(w);
+    for (int m = 0; m < w->images; m++) {
+        const int *face = w->face[m];
+        if (face[1] < 0) isph_walk_list_plane(w, &w->plane[face[0]]);
+        else isph_walk_empty_batch(w);
+        for (int f = 0; f < w->reflections.total && face[1] >= 0; f++) {
             int side[3] = { -1, -1, -1 };
-            if (w->reflection > 0) isph_choose_sides(&w->reflections, w->reflection, side);
-            if (face[1] < 0) isph_walk_add_image(w, &w->plane[face[0]], side);
-            else isph_walk_add_corner(w, face, w->whole[w->at], side);
-            w->reflection = (w->reflection + 1)%w->reflections.total;
-            w->at += w->reflection == 0;
+            if (f > 0) isph_choose_sides(&w->reflections, f, side);
+            isph_walk_add_corner(w, face, w->whole[m], side);
         }
-        if (w->used == TOBI_LANES) return 1;
-        for (;; w->k++) {
-            if (w->k == w->groups) return w->used > 0;
-            const int32_t j = w->v->list[w->first + w->k];
-            if (j != w->i && w->v->last_link[j] >= 0) break;
-        }
-        isph_walk_load_pair(w, w->v->list[w->first + w->k++]);
     }
 }
 
-/* What is missing in the group at hand is out of reach. */
-TOBI_FN void isph_walk_pad(isph_walk *w)
+/* Those of one whose planes do not meet, found before; the batch tells which are within reach. */
+TOBI_FN void isph_walk_take_single(isph_walk *w, const isph_asking *q, const isph_answer *found, int k,
+                                   int64_t j)
 {
-    isph_image_group *g = &w->group;
-    for (int k = w->used; k < 8; k++) {
-        g->neighbor[k] = g->mirror[0][k] = -1;
-        g->x[0][k] = 2*(float)w->v->h;
-        g->x[1][k] = g->x[2][k] = g->normal_velocity[k] = g->velocity_change[k] = g->weight[k] = 0;
-        for (int a = 0; a < 3; a++) {
-            g->displacement[a][k] = w->rest.sign[a][k] = g->normal[a][k] = 0;
-            w->rest.velocity[a][k] = w->rest.change[a][k] = 0;
+    const isph_view *v = w->v;
+    isph_plane p;
+    isph_walk_find_offset(w, j);
+    for (uint32_t left = (uint32_t)found->hit[k]; left; left &= left - 1) {
+        const int bit = tobi_lowest_bit(left);
+        const int32_t own = q->own[bit/ISPH_SEEN], other = found->other[bit%ISPH_SEEN][k];
+        if (isph_faces_apart(&v->mirror[own], &v->mirror[other], w->offset)) continue;
+        if (isph_find_plane(v, own, other, &p)) isph_walk_list_plane(w, &p);
+    }
+}
+
+/* All images of particle i, the last group too. to: NULL, or where the first group is told; first: its place,
+   where groups are made anew. */
+TOBI_FN void isph_walk_take_all(isph_walk *w, const isph_view *v, int64_t i, int64_t *to, int64_t first)
+{
+    isph_asking asking;
+    isph_answer found;
+    w->v = v;
+    w->i = i;
+    w->reflections = isph_find_reflections(v, i);
+    w->first = 8*(int64_t)v->list_start[i];
+    w->to = to;
+    w->next = first;
+    w->pair = -1;
+    w->used = w->batch.count = w->group.corners = w->group.sided = 0;
+    isph_ask_begin(v, i, &w->reflections, &asking);
+    isph_walk_take_pair(w, i);
+    for (int k = 0; k < 8*v->list_groups[i]; k += TOBI_LANES) {
+        isph_ask_pairs(v, i, &asking, v->list + w->first + k, &found);
+        for (unsigned left = found.single | found.several; left; left &= left - 1) {
+            const int at = tobi_lowest_bit(left);
+            const int32_t j = v->list[w->first + k + at];
+            w->pair = k + at;
+            if (found.single >> at & 1) isph_walk_take_single(w, &asking, &found, at, j);
+            else isph_walk_take_pair(w, j);
         }
     }
+    isph_walk_empty_batch(w);
+    if (w->used > 0) isph_walk_put(w);
 }
 
 /* Its first group; -1: it has none. */
@@ -388,32 +367,14 @@ TOBI_FN int64_t isph_first_group(const isph_view *v, int64_t i)
     return v->last_link && v->last_link[i] >= 0 ? v->first_group[v->last_link[i]] : -1;
 }
 
-TOBI_FN int isph_places(const isph_image_group *g) { return g->sided || g->corners ? 2 : 1; }
-
-TOBI_FN void isph_put_group(const isph_view *v, isph_walk *w, int64_t g)
-{
-    isph_walk_pad(w);
-    v->group[g].images = w->group;
-    if (isph_places(&w->group) > 1) v->group[g + 1].rest = w->rest;
-}
-
-/* Images of particle i, in groups as they are free. Those beyond the room are counted, and lost. */
+/* Images of particle i, in groups as they are free. */
 TOBI_FN void isph_list_images(const isph_view *v, int64_t i, double *totals)
 {
     isph_walk w;
     (void)totals;
     if (!v->last_link || v->last_link[i] < 0) return;
-    int64_t *to = &v->first_group[v->last_link[i]];
-    isph_walk_begin(&w, v, i);
-    while (isph_walk_fill(&w)) {
-        const int places = isph_places(&w.group);
-        const int64_t g = tobi_fetch_add(v->group_count, places);
-        if (g + places > v->group_room) continue;
-        isph_put_group(v, &w, g);
-        *to = g;
-        to = &v->group[g].images.next;
-    }
-    *to = -1;
+    isph_walk_take_all(&w, v, i, &v->first_group[v->last_link[i]], -1);
+    *w.to = -1;
 }
 
 TOBI_FN int isph_has_corners(const isph_view *v, int64_t i)
@@ -428,28 +389,29 @@ TOBI_FN int isph_has_corners(const isph_view *v, int64_t i)
 TOBI_FN void isph_refresh_group(const isph_view *v, int64_t group)
 {
     isph_image_group *g = &v->group[group].images;
-    for (int k = 0; k < TOBI_LANES && g->mirror[0][k] >= 0; k++) {
-        int sided[3];
-        double normal[3], speed[2];
-        isph_plane p;
-        for (int a = 0; a < 3; a++) sided[a] = g->sided && v->group[group + 1].rest.sign[a][k] < 0;
-        isph_find_plane(v, g->mirror[0][k], g->mirror[1][k], &p);
-        isph_normalise_plane(&p);
-        isph_plane_along(&p, sided, normal);
-        isph_plane_speed(v, &p, normal, speed);
-        g->normal_velocity[k] = (float)speed[0];
-        g->velocity_change[k] = (float)speed[1];
+    double normal[3][8], along[3][8], velocity[3][8], change[3][8];
+    int used = 0;
+    for (; used < 8 && g->mirror[0][used] >= 0; used++) {
+        const isph_mirror *a = &v->mirror[g->mirror[0][used]], *b = &v->mirror[g->mirror[1][used]];
+        for (int c = 0; c < 3; c++) {
+            normal[c][used] = a->normal[c] + b->normal[c];
+            along[c][used] = !g->sided || v->group[group + 1].rest.sign[c][used] > 0;
+            velocity[c][used] = a->velocity[c] + b->velocity[c];
+            change[c][used] = a->velocity_change[c] + b->velocity_change[c];
+        }
     }
-}
-
-/* The same images in the same groups, made anew. */
-TOBI_FN void isph_make_images_anew(const isph_view *v, int64_t i)
-{
-    isph_walk w;
-    isph_walk_begin(&w, v, i);
-    for (int64_t g = isph_first_group(v, i); g >= 0 && isph_walk_fill(&w); g = w.group.next) {
-        w.group.next = v->group[g].images.next;
-        isph_put_group(v, &w, g);
+    for (int k = 0; k < used; k++) {
+        const double sum[3] = { normal[0][k], normal[1][k], normal[2][k] };
+        const double open[3] = { along[0][k], along[1][k], along[2][k] };
+        double n[3], square = 0, speed = 0, more = 0;
+        for (int a = 0; a < 3; a++) square += sum[a]*sum[a];
+        isph_find_normal(sum, square, open, n);
+        for (int a = 0; a < 3; a++) {
+            speed += 0.5*velocity[a][k]*n[a];
+            more += 0.5*change[a][k]*n[a];
+        }
+        g->normal_velocity[k] = (float)speed;
+        g->velocity_change[k] = (float)more;
     }
 }
 
@@ -458,7 +420,8 @@ TOBI_FN void isph_refresh_images(const isph_view *v, int64_t i, double *totals)
 {
     (void)totals;
     if (isph_has_corners(v, i)) {
-        isph_make_images_anew(v, i);
+        isph_walk w;                                 /* the same images in the same groups */
+        isph_walk_take_all(&w, v, i, NULL, isph_first_group(v, i));
         return;
     }
     for (int64_t g = isph_first_group(v, i); g >= 0; g = v->group[g].images.next) isph_refresh_group(v, g);

@@ -285,7 +285,7 @@ int64_t isph_solver_bytes(const isph_solver *m)
 {
     return (m->rows + TOBI_PAD_ROWS)*row_bytes() + m->krylov_rows*(int64_t)sizeof *m->krylov +
            m->entries*(int64_t)sizeof *m->view.entry +
-           m->mirrors*(int64_t)(sizeof *m->mirror + sizeof *m->view.first_group) +
+           m->mirrors*(int64_t)(sizeof *m->mirror + sizeof *m->brief + sizeof *m->view.first_group) +
            m->view.group_room*(int64_t)sizeof *m->view.group + isph_forces_bytes(m);
 }
 
@@ -296,6 +296,7 @@ void isph_solver_free(isph_solver *m)
     tobi_array_free(m->krylov);
     isph_forces_free(m);
     tobi_array_free(m->mirror);
+    tobi_array_free(m->brief);
     tobi_array_free(m->view.first_group);
     tobi_array_free(m->view.group);
     tobi_array_free(m->memory);

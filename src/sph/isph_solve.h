@@ -44,6 +44,7 @@ typedef struct isph_solver {
     int64_t rows;                    /* room for particles                                          */
     int64_t entries;                 /* room for them                                               */
     isph_mirror *mirror;             /* of s->links, see isph_bodies.h                              */
+    isph_brief *brief;               /* of each, behind one of none                                 */
     int64_t mirrors;                 /* room for them                                               */
     int64_t groups;                  /* of images, that are in use                                  */
     int corners;                     /* 1: those of corners, further faces, follow all of the entries */

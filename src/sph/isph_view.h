@@ -25,6 +25,14 @@ typedef struct isph_mirror {
     double velocity_change[3];       /* m/s, of that velocity since the step before                 */
 } isph_mirror;
 
+/* The same in short, two records of four: for a look at many. The first is that of no plane.  */
+typedef struct isph_brief {
+    float offset[3];
+    int32_t body;                    /* -1: none                                                    */
+    float normal[3];
+    int32_t previous;                /* one more than that of the mirror                            */
+} isph_brief;
+
 /* Eight images of pairs of one particle at bodies. */
 typedef struct isph_image_group {
     float x[3][8], displacement[3][8];       /* m, from the image to the particle, from j to its image */
@@ -103,6 +111,7 @@ typedef struct isph_view {
     const uint16_t *list_groups;
     const int32_t *last_link;        /* last mirror of each particle, < 0: none; NULL: no bodies    */
     const isph_mirror *mirror;
+    const isph_brief *brief;         /* of mirror k at k + 1                                        */
     isph_group_place *group;         /* images at bodies                                            */
     int64_t *group_count, group_room;
     int64_t *first_group;            /* of the particle that has this as its last link              */

@@ -3,6 +3,7 @@
    promise. */
 #include "sph/kernels.h"
 #include "sph/isph.k.h"
+#include "sph/isph_body_pairs.k.h"
 #include "core/smoothing.h"
 #include "kernel/smoothing_oracle.h"
 #include "unit/poisson_rig.h"
@@ -32,6 +33,7 @@ static int bodies;
 static tobi_double3 *shifted;
 static int32_t *near_body;
 static isph_mirror *mirror;
+static isph_brief *brief;
 static tobi_boundary_link *links;
 static isph_coupling *couplings;
 static int64_t groups;               /* of images at the body */
@@ -42,6 +44,7 @@ static void put_body(void)
 {
     const double away = FAR*view.h;
     int32_t count = 0;
+    brief[0] = (isph_brief){.body = -1};
     for (int64_t i = 0; i < view.count; i++) {
         shifted[i] = pool.p.position[i];
         near_body[i] = -1;
@@ -55,6 +58,7 @@ static void put_body(void)
         mirror[count++] = (isph_mirror){.body = 0, .previous = -1, .share = 1, .normal = {1, 0, 0},
                                         .offset = {pool.p.position[i].x, 0, 0},
                                         .velocity = {FLOW, 0.3, 0}, .velocity_change = {CHANGE, 0.1, 0}};
+        isph_make_brief(&mirror[count - 1], &brief[count]);
     }
     view.size[0] = pool.box.size[0] + (bodies ? away : 0);
     view.last_link = bodies ? near_body : NULL;
@@ -96,6 +100,7 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     view.entry = calloc((size_t)pool.cells.list_used, sizeof(float));
     view.in = calloc((size_t)count, sizeof(double));
     view.mirror = mirror = calloc((size_t)count, sizeof *mirror);
+    view.brief = brief = calloc((size_t)count + 1, sizeof *brief);
     view.position = shifted = calloc((size_t)count, sizeof *shifted);
     near_body = calloc((size_t)count, sizeof *near_body);
     view.group = calloc(GROUPS, sizeof *view.group);
@@ -124,6 +129,7 @@ static void close_pool(void)
     free(view.entry);
     free((void *)view.in);
     free(mirror);
+    free(brief);
     free(shifted);
     free(near_body);
     free(view.group);
