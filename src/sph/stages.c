@@ -331,7 +331,7 @@ void sph_measure_forces(tobi_system *s, sph_view *v, const sph_kernels *k, doubl
 double sph_move_particles(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock)
 {
     double t[TOBI_TOTALS];
-    v->speed_cap = (float)fmax(1.5*tobi_system_speed_scale(s), s->sim->def.speed_limit);
+    v->speed_cap = (float)fmax(3*tobi_system_speed_scale(s), s->sim->def.speed_limit);
     sph_openings_drive(s);
     launch(s, v, k->sph_advance, t);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] += t[1 + a]/s->dt;

@@ -273,7 +273,7 @@ static tobi_status check_runaway(const tobi_system *s, tobi_error *err)
         /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
         const int64_t few = 20 + s->particles.count/200;
         if (s->info.speed_max < TOBI_SPEED_LIMIT && s->info.capped <= few) return TOBI_OK;
-        limit = fmin(1.4*tobi_system_speed_scale(s), TOBI_SPEED_LIMIT);
+        limit = fmin(2.8*tobi_system_speed_scale(s), TOBI_SPEED_LIMIT);
     }
     if (s->info.speed_max < limit) return TOBI_OK;
     name_remedy(s, limit, remedy);

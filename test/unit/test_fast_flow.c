@@ -187,6 +187,29 @@ static void test_written_zeros(void **state)
     }
 }
 
+/* A block that falls flat on the floor throws jets to its sides, twice as fast as it fell: they are flow, and
+   are not slowed. */
+static void test_flat_fall(void **state)
+{
+    const char *text = "{ \"dimension\": 2, \"threads\": 1, \"spacing\": 0.01, \"end_time\": 1,"
+        "\"domain\": { \"min\": [0, 0], \"max\": [0.6, 1.2] }, \"fluids\": [ { \"name\": \"water\","
+        "\"fill\": [ { \"box\": { \"min\": [0.2, 0.8], \"max\": [0.4, 1] } } ] } ] }";
+    const double end = sqrt(2*0.8/9.81) + 0.02;
+    double fastest = 0;
+    tobi_error err = { 0 };
+    tobi_step_info info = { 0 };
+    tobi_world *w;
+    (void)state;
+    must(start_scene(text, &w, &err), &err);
+    while (tobi_world_time(w) < end) {
+        must(tobi_world_step(w, 0, &info, &err), &err);
+        assert_int_equal(info.capped, 0);
+        fastest = fmax(fastest, info.speed_max);
+    }
+    assert_true(fastest > 1.7*sqrt(2*9.81*0.8));
+    tobi_world_destroy(w);
+}
+
 /* A place in a 2-D scene has two components, also where a word may stand for it. */
 static void test_flat_seed(void **state)
 {
@@ -208,7 +231,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_narrow), cmocka_unit_test(test_piston), cmocka_unit_test(test_open_tube),
         cmocka_unit_test(test_full_pipes), cmocka_unit_test(test_pressure),
-        cmocka_unit_test(test_level_zero),
+        cmocka_unit_test(test_level_zero), cmocka_unit_test(test_flat_fall),
         cmocka_unit_test(test_written_zeros), cmocka_unit_test(test_flat_seed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
