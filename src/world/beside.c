@@ -1,8 +1,10 @@
 /* Bodies, and solids beside a liquid, with periodic sides: the liquid goes through these, bodies and solids
    do not, so that a flap in a channel is possible and a leaf that drifts through is not (decision 79).
-   Drawback: it is told when it happens, in the middle of a run. */
+   Drawback: whether one comes there is known when it happens, in the middle of a run. */
 #include "world/beside.h"
 #include "base/error.h"
+#include "rigid/lines.h"
+#include <stdio.h>
 
 typedef struct sides { const tobi_system *s; double reach; const int *periodic; } sides;
 
@@ -19,6 +21,43 @@ static int near_side(const sides *v, int64_t i)
 static void count_near(const void *view, int64_t begin, int64_t end, double *totals)
 {
     for (int64_t i = begin; i < end; i++) totals[0] += near_side(view, i) >= 0;
+}
+
+/* A line or a joint leads nowhere far. */
+static bool is_held(const tobi_world *w, int body)
+{
+    bool held = false;
+    for (int k = 0; k < w->line_count; k++) held |= w->lines[k].body == body || w->lines[k].to_body == body;
+    for (int k = 0; k < w->sim.constraints.count; k++) {
+        const int *of = w->sim.constraints.at[k].body;
+        held |= of[0] == body || of[1] == body;
+    }
+    return held;
+}
+
+tobi_status tobi_beside_note(tobi_world *w, tobi_error *err)
+{
+    const tobi_box *box = &w->system[0].box;
+    const double spacing = w->system[0].smoothing.spacing;
+    for (int k = 0; k < w->sim.body_count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        double low[3], high[3];
+        char text[200], axes[8] = "";
+        int length = 0;
+        if (b->rigid.kind == TOBI_PRESCRIBED || is_held(w, k)) continue;
+        tobi_bvh_box(b->bvh, low, high);
+        for (int a = 0; a < box->dimension; a++) {
+            if (!box->periodic[a] || b->rigid.locked >> a & 1) continue;
+            if (low[a] < spacing && high[a] > box->size[a] - spacing) continue;
+            if (length) axes[length++] = ',';
+            axes[length++] = "xyz"[a];
+        }
+        if (!length) continue;
+        snprintf(text, sizeof text, "does not go through the periodic sides along %s: the run ends where it "
+                 "comes to one; \"locked\": \"%s\", or a larger domain, keeps it from there\n", axes, axes);
+        TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
+    }
+    return TOBI_OK;
 }
 
 /* Liquid beyond a side does not see what sticks out there: a raft that drifts through would sink. One that

@@ -276,6 +276,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_openings_note(w, err));
     TOBI_TRY(tobi_overlap_note_solids(w, err));
     TOBI_TRY(tobi_beside_check(w, err));
+    TOBI_TRY(tobi_beside_note(w, err));
     TOBI_TRY(tobi_world_note_edges(w, err));
     TOBI_TRY(tobi_world_fit_systems(w, err));
     for (int k = 0; k < w->system_count; k++) TOBI_TRY(tobi_world_start_system(w, &w->system[k], err));

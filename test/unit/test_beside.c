@@ -113,6 +113,19 @@ static void periodic_sides(void **state)
     raft.dynamics = TOBI_FREE;
     raft.velocity[0] = 1;
     OK(tobi_world_add_body(w, &raft, &err));
+    raft.name = "tied";
+    raft.locked = "x";
+    raft.velocity[0] = 0;
+    raft.box_min[0] = 0.01; raft.box_max[0] = 0.05;
+    OK(tobi_world_add_body(w, &raft, &err));
+    OK(tobi_world_start(w, &err));
+    int told = 0;
+    for (int k = 0; tobi_world_note(w, k); k++) {
+        told += strstr(tobi_world_note(w, k), "body 'raft': does not go through the periodic sides along "
+                       "x: the run ends where it comes to one") != NULL;
+        assert_null(strstr(tobi_world_note(w, k), "body 'tied': does not go"));
+    }
+    assert_int_equal(told, 1);
     REFUSED(tobi_world_advance(w, 0.05, NULL, &err), TOBI_UNSUPPORTED, "unless they reach from side to side; "
             "keep it there with \"locked\": \"x\", or lengthen the domain");
     tobi_world_destroy(w);
