@@ -100,16 +100,33 @@ static tobi_status note_contact_angles(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+/* The least side of its box at rest. */
+static double find_thickness(const tobi_body *b, int dimension)
+{
+    double low[3], high[3], least = INFINITY;
+    tobi_bvh_box(b->bvh, low, high);
+    for (int a = 0; a < dimension; a++) least = fmin(least, high[a] - low[a]);
+    return least;
+}
+
 /* Contacts hold a solid at the surface of a body; what lies deeper than that in one that comes back meets
-   none. */
+   none. Liquid deeper than a spacing lands in a layer beside the body at once, crowded. */
 static tobi_status note_returns(tobi_world *w, tobi_error *err)
 {
-    char text[200];
-    for (int k = 0; tobi_world_solid_count(w) > 0 && k < w->sim.body_count; k++) {
+    const tobi_system *s = &w->system[0];
+    char text[240];
+    for (int k = 0; k < w->sim.body_count; k++) {
         const tobi_body *b = &w->sim.bodies[k];
+        const int thick = find_thickness(b, s->box.dimension) > 2.001*s->smoothing.spacing;
         if (!(b->absent[1] > 0)) continue;
-        snprintf(text, sizeof text, "comes back at %.4g s: a solid that lies in it then is not pushed "
-                 "out; let it come by a motion, if one may\n", b->absent[1]);
+        if (tobi_world_solid_count(w) > 0) {
+            snprintf(text, sizeof text, "comes back at %.4g s: a solid that lies in it then is not pushed "
+                     "out; let it come by a motion, if one may\n", b->absent[1]);
+            TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
+        }
+        if (s->method->solids || !thick) continue;
+        snprintf(text, sizeof text, "comes back at %.4g s: liquid that lies in it then is thrown about, as "
+                 "it is thicker than two spacings; let it come by a motion, if liquid may\n", b->absent[1]);
         TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
     }
     return TOBI_OK;

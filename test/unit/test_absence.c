@@ -156,25 +156,31 @@ static void a_thick_body_comes_back_into_water(void **state)
     }
 }
 
-/* Solids are not pushed out of a body that comes back, and who has some is told. */
-static void what_comes_back_into_solids_is_told(void **state)
+/* Solids are not pushed out of a body that comes back, and who has some is told; so is who has a
+   body thicker than two spacings that comes back into liquid. */
+static void what_comes_back_is_told(void **state)
 {
     (void)state;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         tobi_error err;
         tobi_world *world = make_tank("dfsph", 0.1);
         tobi_solid_def s = tobi_default_solid_def();
         tobi_fill_def fill = tobi_default_fill_def();
-        int told = 0;
+        int told = 0, thrown = 0;
         s.name = "jelly";
         fill.box_min[0] = 0.2; fill.box_max[0] = 0.3; fill.box_max[1] = 0.1;
-        const tobi_body_def gate = make_gate(0.1, k == 1 ? 0 : 0.2);
+        tobi_body_def gate = make_gate(0.1, k == 1 ? 0 : 0.2);
+        if (k == 3) gate.box_max[0] = gate.box_min[0] + 2*D;
         if (k < 2) assert_int_equal(tobi_world_add_solid(world, &s, &fill, 1, &err), TOBI_OK);
         assert_int_equal(tobi_world_add_body(world, &gate, &err), TOBI_OK);
         assert_int_equal(tobi_world_start(world, &err), TOBI_OK);
         for (int n = 0; tobi_world_note(world, n); n++)
             told += strstr(tobi_world_note(world, n), "comes back at 0.2 s: a solid that lies in it") != NULL;
+        for (int n = 0; tobi_world_note(world, n); n++)
+            thrown += strstr(tobi_world_note(world, n), "comes back at 0.2 s: liquid that lies in it then is "
+                             "thrown about") != NULL;
         assert_int_equal(told, k == 0);
+        assert_int_equal(thrown, k == 0 || k == 2);
         tobi_world_destroy(world);
     }
 }
@@ -286,7 +292,7 @@ int main(void)
         cmocka_unit_test(a_gate_is_taken_away),
         cmocka_unit_test(a_body_comes_back),
         cmocka_unit_test(a_thick_body_comes_back_into_water),
-        cmocka_unit_test(what_comes_back_into_solids_is_told),
+        cmocka_unit_test(what_comes_back_is_told),
         cmocka_unit_test(a_shelf_is_taken_away),
         cmocka_unit_test(a_restart_is_the_same),
         cmocka_unit_test(what_cannot_be_absent_is_refused),
