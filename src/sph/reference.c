@@ -12,6 +12,8 @@ static const double COVER = 1, RAMP = 3, REST = 0.5;
 /* Of gravity: what acts besides it in water that is still at rest. */
 static const double DRIVEN = 0.3;
 enum { DROPS = 1024 };
+/* Spacings: a drop at most, however high the domain is. */
+static const double DROP_MOST = 0.25;
 
 void sph_reference_set(tobi_system *s, double low)
 {
@@ -31,19 +33,20 @@ void sph_reference_set(tobi_system *s, double low)
     w->push = low > 0 ? least*sqrt(g2) : 0;
 }
 
-typedef struct counting { const float *surface_depth; double scale; int64_t *n; } counting;
+/* Depths from top on, and those above as if there; scale: drops per metre. */
+typedef struct counting { const float *surface_depth; double top, scale; int64_t *n; } counting;
 
 static void count_drops(const void *view, int64_t begin, int64_t end)
 {
     const counting *c = view;
     int64_t n[DROPS] = {0};
     for (int64_t i = begin; i < end; i++)
-        if (c->surface_depth[i] > 0) n[(int)(c->surface_depth[i]*c->scale)]++;
+        if (c->surface_depth[i] > 0) n[(int)fmax(0, (c->surface_depth[i] - c->top)*c->scale)]++;
     for (int k = 0; k < DROPS; k++)
         if (n[k]) __atomic_fetch_add(&c->n[k], n[k], __ATOMIC_RELAXED);
 }
 
-/* The depth in the middle of all that are counted, m. */
+/* The depth below the top in the middle of all that are counted, m. */
 static double find_middle(const int64_t n[DROPS], double scale)
 {
     int64_t all = 0, upper = 0;
@@ -57,15 +60,16 @@ double sph_reference_low(tobi_system *s)
 {
     sph_state *state = sph_of(s);
     int64_t n[DROPS] = {0}, count = s->particles.count;
-    double scale = DROPS/(1.0001*state->lowest);
-    const counting view = { sph_fields_of(&s->particles)->surface_depth, scale, n };
+    const double all = 1.0001*state->lowest, range = fmin(all, DROPS*DROP_MOST*s->smoothing.spacing);
+    const double top = all - range, scale = DROPS/range;
+    const counting view = { sph_fields_of(&s->particles)->surface_depth, top, scale, n };
     if (!(state->lowest > 0)) return 0;
     tobi_loop(s->sim->exec.threads, count, 0, count_drops, &view);
-    state->middle = find_middle(n, scale);
+    state->middle = top + find_middle(n, scale);
     double few = 1 + 0.02*(s->box.dimension == 3 ? cbrt((double)count*(double)count) : sqrt((double)count));
     int k = DROPS - 1;
     for (int64_t deeper = n[k]; k > 0 && (double)deeper <= few; deeper += n[k]) k--;
-    return k/scale;
+    return top + k/scale;
 }
 
 /* Down with the surface, but not faster than anything moves: a void that opens in the depth, as behind a
