@@ -141,24 +141,47 @@ static tobi_boundary_link *last_of(const tobi_system *s, int64_t k)
     return sph_fields_of(&s->particles)->last_link[l->particle] == k ? l : NULL;
 }
 
+/* What may hide neighbours from i; 0: more bodies than there is room for. */
+static int find_hiding(const tobi_system *s, int64_t i, tobi_hiding *v)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    const double clear = 0.01*s->smoothing.spacing;
+    v->bodies = 0;
+    for (int32_t k = sph_fields_of(&s->particles)->last_link[i]; k >= 0; k = n->link[k].previous) {
+        const tobi_boundary_entry *e = &n->entry[k];
+        const int above = s->sim->bodies[n->link[k].body].convex && e->distance > clear;
+        if (v->bodies == TOBI_HIDING_MOST) return 0;
+        v->distance[v->bodies] = n->link[k].distance;
+        for (int a = 0; a < 3; a++) v->offset[v->bodies][a] = (float)e->offset[a];
+        v->least[v->bodies++] = above ? (float)(clear*e->distance) : INFINITY;
+    }
+    return 1;
+}
+
 /* Marks pairs that a body separates, where they stand in the list of the lower row, by ~j for j. */
 static void ask_pairs(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const int32_t *last_link = sph_fields_of(&s->particles)->last_link;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    const tobi_look_loops *loops = sph_of(s)->links.loops;
+    tobi_hiding v = { .record = s->cells.record, .from_fixed = s->box.from_fixed,
+                      .body_distance = f->body_distance, .h = (float)s->smoothing.h };
     for (int64_t k = begin; k < end; k++) {
         tobi_boundary_link *own = last_of(s, k);
         if (!own) continue;
         const int32_t i = own->particle;
         int count;
         int32_t *list = list_of(&s->cells, i, &count);
-        for (int g = 0; g < count; g++) {
-            const int32_t j = list[g];
-            if (j <= i || !may_separate(s, i, j) || !separated(s, i, j)) continue;
-            list[g] = ~j;
-            __atomic_store_n(&own->cut, 1, __ATOMIC_RELAXED);
-            __atomic_store_n(&sph_of(s)->links.link[last_link[j]].cut, 1, __ATOMIC_RELAXED);
-        }
+        const int few = find_hiding(s, i, &v);
+        for (int g = 0; g < count; g += 8)
+            for (unsigned left = few ? loops->may_hide(&v, i, list + g) : 0xFF; left; left &= left - 1) {
+                const int at = g + tobi_lowest_bit(left);
+                const int32_t j = list[at];
+                if (j <= i || !may_separate(s, i, j) || !separated(s, i, j)) continue;
+                list[at] = ~j;
+                __atomic_store_n(&own->cut, 1, __ATOMIC_RELAXED);
+                __atomic_store_n(&sph_of(s)->links.link[f->last_link[j]].cut, 1, __ATOMIC_RELAXED);
+            }
     }
 }
 

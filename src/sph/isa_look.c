@@ -3,6 +3,7 @@
    axes side by side: their order is that of the points. Drawback: one step at a time through the table of a
    plane, which no register gathers everywhere. */
 #include "sph/look_loops.h"
+#include "exec/pairs.h"
 #include <string.h>
 
 #define JOIN_(a, b) a##_##b
@@ -192,4 +193,31 @@ static void sum_points(const tobi_look_view *view, const tobi_facing_points *q, 
     e->wall_flux = flux, e->share = share, e->steady = steady, e->height = height, e->drag = drag;
 }
 
-const tobi_look_loops JOIN(tobi_look_loops, TOBI_ISA) = {list_points, any_point, list_places, sum_points};
+/* The tests of boundary_pairs.c, with room for rounding. */
+static unsigned may_hide(const tobi_hiding *v, int32_t i, const int32_t j[8])
+{
+    const tobi_record own = v->record[i];
+    const lane zero = lane_set(0), one = lane_set(1);
+    float beyond[8];
+    lane_int at[3];
+    lane w, d[3], square = zero, found = zero;
+    for (int k = 0; k < 8; k++) beyond[k] = v->body_distance[j[k]];
+    const lane both = lane_load(beyond) + v->body_distance[i];
+    lane_load_record(v->record, j, &at[0], &at[1], &at[2], &w);
+    for (int a = 0; a < 3; a++) {
+        d[a] = lane_from_int(lane_sub_wrap((&own.x)[a], at[a]))*v->from_fixed[a];
+        square += d[a]*d[a];
+    }
+    const lane reach = 1.0202f*square, edge = lane_set(1e-5f*v->h*v->h);
+    const lane apart = lane_where_less(both*both, 1.0011f*square, one, zero);
+    for (int b = 0; b < v->bodies; b++) {
+        const float *o = v->offset[b], distance = v->distance[b];
+        const lane along = (o[0] - d[0])*o[0] + (o[1] - d[1])*o[1] + (o[2] - d[2])*o[2];
+        const lane hides = lane_where_less(v->least[b] + edge, along, zero, one);
+        found = lane_where_less(reach, lane_set(distance*distance), found, found + hides);
+    }
+    return lane_mask_less(zero, found*apart);
+}
+
+const tobi_look_loops JOIN(tobi_look_loops, TOBI_ISA) = {list_points, any_point, list_places, sum_points,
+                                                       may_hide};

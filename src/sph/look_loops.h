@@ -2,6 +2,7 @@
 #pragma once
 #include "core/body.h"
 #include "core/smoothing.h"
+#include "exec/portable.h"
 #include "sph/boundary_points.h"
 #include "sph/couple.k.h"
 
@@ -12,6 +13,20 @@ typedef struct tobi_look_view {
     double gravity[3];        /* m/s2, what the particle feels                                    */
     int alone;                /* 1: no other thread looks at the body                             */
 } tobi_look_view;
+
+enum { TOBI_HIDING_MOST = 8 };
+
+/* What may hide neighbours from a particle, in float. */
+typedef struct tobi_hiding {
+    const tobi_record *record;
+    const float *from_fixed;  /* m per unit of the records                                        */
+    const float *body_distance;      /* m, of each particle                                       */
+    float h;                  /* m                                                                */
+    int bodies;               /* that the particle sees                                           */
+    float distance[TOBI_HIDING_MOST];           /* m, from each                                   */
+    float offset[TOBI_HIDING_MOST][3];          /* m, from its nearest point                      */
+    float least[TOBI_HIDING_MOST];   /* m2: what is more along the offset is surely not hidden by it */
+} tobi_hiding;
 
 typedef struct tobi_look_loops {
     /* Adds those of points [begin, end) to the list that face x and are nearer than the root of reach2. */
@@ -27,6 +42,8 @@ typedef struct tobi_look_loops {
     /* Adds the listed points, by their weights, to link and entry, and marks them as wet and covered. */
     void (*sum)(const tobi_look_view *v, const tobi_facing_points *list, tobi_boundary_link *link,
                 tobi_boundary_entry *entry);
+    /* Bit k: a body may lie between i and j[k]; a bit too many does no harm. */
+    unsigned (*may_hide)(const tobi_hiding *v, int32_t i, const int32_t j[8]);
 } tobi_look_loops;
 
 extern const tobi_look_loops tobi_look_loops_v2, tobi_look_loops_v3, tobi_look_loops_v4;
