@@ -8,7 +8,7 @@
 #define ISPH_REACH 1.0001
 #define ISPH_ROUGH_REACH 1.002f
 
-enum { ISPH_SEEN = 5 };              /* planes of a particle that are asked for; of more, each pair is left */
+enum { ISPH_SEEN = 4 };              /* planes of a particle that are asked for; of more, each pair is left */
 
 /* What is found of eight pairs. */
 typedef struct isph_answer {
@@ -121,7 +121,7 @@ TOBI_FN void isph_ask_pairs(const isph_view *v, int64_t i, const isph_asking *q,
         }
         lane_load_float4(rows, first, &o[0], &o[1], &o[2], &body);
         lane_load_float4(rows, second, &m[0], &m[1], &m[2], &previous);
-        for (int p = 0; p < q->planes; p++)          /* a float holds that many bits */
+        for (int p = 0; p < q->planes; p++)          /* 16 bits: a float holds them */
             hit += isph_ask_plane(q, &q->plane[p], &n, o, m, lane_bits(body), near_sides, (float)v->h, &meet)*
                    (float)(1 << (ISPH_SEEN*p + step));
         any = 0;
