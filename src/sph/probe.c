@@ -245,19 +245,43 @@ double tobi_probe_place(const tobi_system *s, const double x[3], double normal[3
     return measure_place(&wall, wall.foot) + sph_hydrostatic(s, local);
 }
 
-/* A side of the domain as a lattice of places; items are pieces of its rows, as many whatever its length. */
-typedef struct side { const tobi_system *s; int axis, other, end; int64_t rows, columns; } side;
+/* A side of the domain as a lattice of places; items are pieces of its rows, as many whatever its length.
+   low, high, m: no particle is near places outside of them. */
+typedef struct side {
+    const tobi_system *s;
+    int axis, other, end;
+    int64_t rows, columns;
+    double low[3], high[3];
+} side;
+
+static int64_t find_index(double x, double length, int64_t count)
+{
+    return (int64_t)fmin(fmax(floor(x/length*(double)count), 0), (double)count);
+}
+
+/* Cuts *first, *stop to the places of an axis that are near particles. */
+static void cut_to_liquid(const side *w, int axis, int64_t count, int64_t *first, int64_t *stop)
+{
+    const double size = w->s->box.size[axis];
+    const int64_t low = find_index(w->low[axis], size, count);
+    const int64_t high = find_index(w->high[axis], size, count) + 1;
+    if (*first < low) *first = low;
+    if (*stop > high) *stop = high;
+}
 
 static void press_pieces(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const side *w = view;
     const double *size = w->s->box.size;
     const int along = 3 - w->axis - w->other;
-    const int64_t first = w->rows*begin/TOBI_PROBE_PIECES, stop = w->rows*end/TOBI_PROBE_PIECES;
+    int64_t first = w->rows*begin/TOBI_PROBE_PIECES, stop = w->rows*end/TOBI_PROBE_PIECES;
+    int64_t left = 0, right = w->columns;
+    cut_to_liquid(w, w->other, w->rows, &first, &stop);
+    if (w->s->box.dimension == 3) cut_to_liquid(w, along, w->columns, &left, &right);
     membrane m = { .s = w->s };
     m.normal[w->axis] = w->end ? -1 : 1;
     for (int64_t i = first; i < stop; i++)
-        for (int64_t k = 0; k < w->columns; k++) {
+        for (int64_t k = left; k < right; k++) {
             double y[3] = { 0 };
             y[w->axis] = w->end ? size[w->axis] : 0;
             y[w->other] = ((double)i + 0.5)*size[w->other]/(double)w->rows;
@@ -266,13 +290,20 @@ static void press_pieces(const void *view, int64_t begin, int64_t end, double *t
         }
 }
 
-static double press_side(tobi_system *s, int axis, int end)
+/* Places farther from all particles than a search reaches have no pressure. */
+static const double REACH = 8;      /* spacings */
+
+static double press_side(tobi_system *s, int axis, int end, const double low[3], const double high[3])
 {
     const double *size = s->box.size, d = s->smoothing.spacing;
     const int dimension = s->box.dimension, other = (axis + 1) % dimension;
     const double length = size[other], width = dimension == 3 ? size[3 - axis - other] : 1;
-    const side w = { s, axis, other, end, (int64_t)ceil(length/d - 1e-6),
-                     dimension == 3 ? (int64_t)ceil(width/d - 1e-6) : 1 };
+    side w = { s, axis, other, end, (int64_t)ceil(length/d - 1e-6),
+               dimension == 3 ? (int64_t)ceil(width/d - 1e-6) : 1, { 0 }, { 0 } };
+    for (int a = 0; a < 3; a++) {
+        w.low[a] = s->box.periodic[a] ? 0 : low[a] - REACH*d;
+        w.high[a] = s->box.periodic[a] ? size[a] : high[a] + REACH*d;
+    }
     double t[TOBI_TOTALS];
     tobi_launch_each(&s->sim->exec, TOBI_HOST(press_pieces, 1, 0), &w, TOBI_PROBE_PIECES, t);
     return t[0]*length*width/(double)(w.rows*w.columns);
@@ -280,9 +311,15 @@ static double press_side(tobi_system *s, int axis, int end)
 
 void tobi_probe_sides(tobi_system *s, double force[3])
 {
+    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    for (int64_t i = 0; i < s->particles.count; i++)
+        for (int a = 0; a < 3; a++) {
+            low[a] = fmin(low[a], (&s->particles.position[i].x)[a]);
+            high[a] = fmax(high[a], (&s->particles.position[i].x)[a]);
+        }
     for (int a = 0; a < 3; a++) {
         force[a] = 0;
         for (int end = 0; a < s->box.dimension && end < 2 && !s->box.periodic[a]; end++)
-            force[a] += press_side(s, a, end);
+            force[a] += press_side(s, a, end, low, high);
     }
 }

@@ -286,6 +286,26 @@ static void high_domains_change_nothing(void **state)
     assert_true(fabs(speed[1]/speed[0] - 1) < 0.1);
 }
 
+/* Nor does it cost anything to look for the forces on sides where no liquid is: 1e9 places here. */
+static void wide_domains_cost_nothing(void **state)
+{
+    (void)state;
+    tobi_world_def w = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_step_info info;
+    tobi_world *world;
+    w.method = "isph";
+    w.spacing = D;
+    w.threads = 1;
+    for (int a = 0; a < 3; a++) w.domain_max[a] = 300, fill.box_max[a] = 0.1;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+    OK(tobi_world_advance(world, 0.002, &info, &err));
+    assert_true(info.wall_force[2] < -0.2*info.weight);
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -299,6 +319,7 @@ int main(void)
         cmocka_unit_test(what_turns_about_its_axis_is_not_told),
         cmocka_unit_test(spray_has_a_large_surface),
         cmocka_unit_test(high_domains_change_nothing),
+        cmocka_unit_test(wide_domains_cost_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
