@@ -6,8 +6,8 @@
 #include "sph/isph_soft.k.h"
 
 /* Of the relative loss of neighbours, 1 - tr M/dim: where the gate begins to open, and is open. */
-#define ISPH_GATE_BEGIN 0.05
-#define ISPH_GATE_OPEN 0.15
+#define ISPH_GATE_BEGIN 0.10
+#define ISPH_GATE_OPEN 0.20
 /* The same of 1 less the least eigenvalue of M: 0.75 is the middle, as of Marrone et al. (2010). */
 #define ISPH_EIGEN_BEGIN 0.20
 #define ISPH_EIGEN_OPEN 0.30
@@ -266,7 +266,9 @@ TOBI_FN double isph_volume_source(const isph_view *v, int64_t i, double divergen
 {
     const int bulk = !(v->gate[i] > 0);
     const double least = !bulk ? 0 : v->open ? -ISPH_STRETCH_MAX : -ISPH_CAVITY_MAX;
-    const double error = v->volume_sum*(v->concentration[i] - 1.0) - v->volume_change*v->dt*divergence,
+    const tobi_float4 c = v->concentration_gradient[i];
+    const double lack = v->surface_lack*v->spacing*sqrt((double)c.x*c.x + (double)c.y*c.y + (double)c.z*c.z),
+                 error = v->volume_sum*(v->concentration[i] - 1 + lack) - v->volume_change*v->dt*divergence,
                  left = v->open ? 0 : ISPH_VOLUME_LEFT,
                  e = isph_larger(error - isph_clamp(error, -left, left), least);
     return v->density*v->volume_gain*e/(v->dt*v->motion_dt);

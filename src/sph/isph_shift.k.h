@@ -12,12 +12,16 @@
 
 /* The shift of positions, eq. (10), as an acceleration over `way` in accel, and the change of velocity that
    goes with it, eq. (10a). totals: [0] sum, [6] largest of |div v|, 1/s, away from a free surface. */
-typedef struct isph_shift_acc { lane ux, uy, uz, core[3], normal[3], slope[9], bend[3]; } isph_shift_acc;
+typedef struct isph_shift_acc {
+    lane ux, uy, uz, core[3], normal[3], slope[9], bend[3];
+    lane low[3], high[3];            /* m/s: of the neighbours, less that of i; 0 is among them     */
+} isph_shift_acc;
 
 /* Points of soft solids push by their core, and mirror velocities. */
 TOBI_FN void isph_shift_soft(const isph_view *v, int64_t i, isph_shift_acc *a)
 {
-    double n[3], core[3] = {0, 0, 0}, bend[3] = {0, 0, 0}, slope[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+    double n[3], core[3] = {0, 0, 0}, bend[3] = {0, 0, 0}, low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
+    double slope[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
     isph_soft_normal(v, i, n);
     ISPH_SOFT_LINKS(v, i, k) {
         const sph_soft_link *l = &v->soft[k];
@@ -28,11 +32,15 @@ TOBI_FN void isph_shift_soft(const isph_view *v, int64_t i, isph_shift_acc *a)
         for (int b = 0; b < 3; b++) {
             core[b] -= push*l->gradient[b]/l->rate;
             bend[b] += speed*n[b]*l->rate;
+            low[b] = -isph_larger(-low[b], -v->slope*speed*n[b]);
+            high[b] = isph_larger(high[b], v->slope*speed*n[b]);
             for (int c = 0; c < 3; c++) slope[3*b + c] -= speed*n[b]*l->gradient[c];
         }
     }
     for (int b = 0; b < 3; b++) a->core[b] = isph_first(core[b]);
     for (int b = 0; b < 3; b++) a->bend[b] = isph_first(bend[b]);
+    for (int b = 0; b < 3; b++) a->low[b] = isph_first(low[b]);
+    for (int b = 0; b < 3; b++) a->high[b] = isph_first(high[b]);
     for (int k = 0; k < 9; k++) a->slope[k] = isph_first(slope[k]);
 }
 
@@ -40,7 +48,7 @@ TOBI_FN void isph_shift_start(const isph_view *v, int64_t i, isph_shift_acc *a)
 {
     const tobi_float4 u = v->velocity[i];
     a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
-    for (int k = 0; k < 3; k++) a->core[k] = a->normal[k] = a->bend[k] = lane_set(0);
+    for (int k = 0; k < 3; k++) a->core[k] = a->normal[k] = a->bend[k] = a->low[k] = a->high[k] = lane_set(0);
     for (int k = 0; k < 9; k++) a->slope[k] = lane_set(0);
     if (isph_soft_last(v, i) >= 0) isph_shift_soft(v, i, a);
 }
@@ -53,7 +61,13 @@ TOBI_FN void isph_shift_pair(const isph_view *v, int64_t i, const tobi_neighbors
     lane u[3];
     (void)i;
     isph_velocity(v, n, m, kind, u);
-    u[0] = f*(u[0] - a->ux); u[1] = f*(u[1] - a->uy); u[2] = f*(u[2] - a->uz);
+    u[0] -= a->ux; u[1] -= a->uy; u[2] -= a->uz;
+    for (int b = 0; b < 3; b++) {
+        const lane change = lane_where_less(lane_set(0), f, u[b], lane_set(0));
+        a->high[b] += lane_positive(change - a->high[b]);
+        a->low[b] -= lane_positive(a->low[b] - change);
+        u[b] = f*u[b];
+    }
     for (int b = 0; b < 3; b++) {
         a->core[b] += push*x[b];
         a->bend[b] += u[b];
@@ -86,6 +100,18 @@ TOBI_FN void isph_add_divergence(const isph_view *v, int64_t i, const double g[9
     totals[6] = isph_larger(totals[6], size);
 }
 
+/* A change of velocity along axis a, kept within those of the neighbours: a gradient goes on beyond them, and
+   liquid that the shift holds before a wall would gain speed [Bermejo & Staniforth 1992]. */
+TOBI_FN double isph_limit_change(const isph_shift_acc *s, int a, double change)
+{
+    double low = 0, high = 0;
+    for (int k = 0; k < TOBI_LANES; k++) {
+        low = -isph_larger(-low, -lane_at(s->low[a], k));
+        high = isph_larger(high, lane_at(s->high[a], k));
+    }
+    return isph_clamp(change, low, high);
+}
+
 TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s, double *totals)
 {
     const double full = v->trace[i]/(double)v->dimension, d = v->spacing;
@@ -112,7 +138,7 @@ TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s,
     for (int a = 0; a < 3; a++) {
         const double change = g[3*a]*along[0] + g[3*a + 1]*along[1] + g[3*a + 2]*along[2] +
                               damping*lane_sum(s->bend[a]);
-        (&v->shift_velocity[i].x)[a] = a < v->dimension ? (float)(part*change) : 0;
+        (&v->shift_velocity[i].x)[a] = a < v->dimension ? (float)isph_limit_change(s, a, part*change) : 0;
         (&v->accel[i].x)[a] = (float)(keep*x[a]/(v->way*v->way));
     }
 }

@@ -63,6 +63,7 @@ typedef struct isph_view {
     double full;                     /* 1/m2: the sum of a row of the Laplacian on the lattice      */
     double surface_row, surface_force;     /* 1: of what is missing at a surface, isph_surface.h      */
     double surface_loss;             /* 1: of neighbours, of the top row of a flat surface          */
+    double surface_lack;             /* 1: lack of volume of the second row, over d |sum V grad W|  */
     double size[3];                  /* m                                                           */
     int periodic[3];
     float inverse_h;                 /* 1/m                                                         */

@@ -42,7 +42,7 @@ static double gap_of(int64_t i, const sums *s)
                  rest = sqrt(away*away + c[1]*c[1] + c[2]*c[2]);
     const isph_mirror *m = near_body[i] >= 0 ? &mirror[near_body[i]] : NULL;
     double closing = 0;
-    if (!view.open || !m || !(loss_of(s) > 0.05)) return 0;
+    if (!view.open || !m || !(loss_of(s) > 0.1)) return 0;
     for (int a = 0; a < 3; a++) closing += (m->velocity[a] - (&view.velocity[i].x)[a])*m->normal[a];
     return clip((0.25 - rest*d)/0.1)*clip((0.4 - loss_of(s))/0.1)*clip((2.25 - m->offset[0]/d)/0.5)*
            clip((0.3 - closing/view.gap_speed)/0.2);

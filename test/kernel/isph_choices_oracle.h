@@ -32,7 +32,7 @@ static void check_geometry_sums(check *c, const double *t)
 static void oracle_isph_mark(check *c, int64_t i, const sums *s)
 {
     if (view.by_count) compare(c, view.gate[i], clip((0.85 - s->count/view.lattice_count)/0.1), 1);
-    else compare(c, view.gate[i], s->cone == 0 && 1 - view.trace[i]/view.dimension > 0.05, 1);
+    else compare(c, view.gate[i], s->cone == 0 && 1 - view.trace[i]/view.dimension > 0.1, 1);
 }
 
 static void oracle_isph_divergence(check *c, int64_t i, const sums *s)

@@ -81,6 +81,7 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
                        .inverse_h = (float)(1/pool.h), .density = 1000, .dt = 1e-3, .motion_dt = 2e-3,
                        .way = 5e-4, .second_order = 1, .keeps_volume = 1, .shift_damping = 2,
                        .surface_row = 1.2, .surface_force = 1.1, .surface_loss = 0.3,
+                       .surface_lack = 0.2,
                        .volume_gain = 0.1, .shifting = 0.5,
                        .keep = 0.9, .mean = 3, .carry = 0.4, .gain = 0.7,
                        .volume_sum = 1, .by_count = 1, .lattice_count = dimension == 3 ? 56 : 20,
@@ -148,7 +149,7 @@ static void run(tobi_kernel k, double *totals)
 typedef struct image { int64_t j; double x[3], r, displacement[3]; int flip[3]; int self; } image;
 typedef struct sums {
     double moment[6], concentration, gradient_c[3], product, divergence, difference, rest, row,
-           gradient[3], core[3], normal[3], slope[9], bend[3], count, cone, mean[3], all[3],
+           gradient[3], core[3], normal[3], slope[9], bend[3], low[3], high[3], count, cone, mean[3], all[3],
            plain[3], in_face;
 } sums;
 static void add_choices(int64_t i, const image *m, const double u[3], double f, int plain, sums *s);
@@ -206,6 +207,8 @@ static void add_pair(int64_t i, const image *m, sums *s)
         s->gradient[k] -= (p - own)/path*f*x[k];
         if (m->r < 0.8*view.spacing) s->core[k] += 0.25*(0.8*view.spacing - m->r)*x[k]/m->r;
         s->bend[k] += jump*f;
+        s->low[k] = fmin(s->low[k], jump);
+        s->high[k] = fmax(s->high[k], jump);
         for (int c = 0; c < 3; c++) s->slope[3*k + c] -= jump*f*x[c];
         const tobi_float4 *of = &view.concentration_gradient[m->j];
         if (!image) s->normal[k] += (double)of->w*(&of->x)[k];
@@ -266,7 +269,7 @@ static double clip(double x) { return fmin(fmax(x, 0), 1); }
 
 static double gate_of(int64_t i, const sums *s)
 {
-    return view.open ? clip((loss_of(s) - 0.05)/0.1)*(1 - gap_of(i, s)) : clip((loss_of(s) - 0.6)/0.2);
+    return view.open ? clip((loss_of(s) - 0.1)/0.1)*(1 - gap_of(i, s)) : clip((loss_of(s) - 0.6)/0.2);
 }
 
 static void oracle_isph_geometry(check *c, int64_t i, const sums *s)
@@ -315,7 +318,10 @@ static double excess_of(int64_t i, const sums *s)
 
 static double source_of(int64_t i, const sums *s)
 {
-    const double error = view.concentration[i] - 1, left = view.open ? 0 : fmax(fmin(error, 0.02), -0.02);
+    const float *n = &view.concentration_gradient[i].x;
+    const double size = sqrt((double)n[0]*n[0] + (double)n[1]*n[1] + (double)n[2]*n[2]);
+    const double error = view.concentration[i] - 1 + 0.2*view.spacing*size;
+    const double left = view.open ? 0 : fmax(fmin(error, 0.02), -0.02);
     const double e = fmax(error - left, view.gate[i] > 0 ? 0 : view.open ? -0.05 : -0.5);
     return s->difference + (1 - view.gate[i])*s->rest + 0.5*view.density*view.invariant[i] -
            view.density/view.dt*s->divergence + view.density*0.1*e/(view.dt*view.motion_dt);

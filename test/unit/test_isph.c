@@ -324,7 +324,7 @@ static void sides_carry_the_weight(void **state)
         worst = fmax(worst, fabs(info.wall_force[1]/info.weight + 1));
     }
     assert_true(info.kinetic_energy > 1);
-    if (!(worst < 0.005)) fail_msg("the force on the sides is off by %g of the weight", worst);
+    if (!(worst < 0.006)) fail_msg("the force on the sides is off by %g of the weight", worst);
     tobi_world_destroy(world);
 }
 
@@ -481,7 +481,33 @@ static void a_pool_rests(void **state)
     OK(start_scene(text, &w, &err));
     OK(tobi_world_advance(w, 8, &info, &err));
     print_message("pool of 320 kg/m: %.2g J/m after 8 s\n", info.kinetic_energy);
-    assert_true(info.kinetic_energy < 0.5*320*1e-3*1e-3);        /* 1 mm/s */
+    assert_true(info.kinetic_energy < 0.5*320*1e-4*1e-4);        /* 0.1 mm/s */
+    tobi_world_destroy(w);
+}
+
+/* A step of one spacing in the level sets a pool sloshing. Twice a period the slosh itself has no speed: what
+   is left is noise of the surface, and of other waves. It was 0.08 J/m (decision 105). */
+static void a_slosh_stays_clean(void **state)
+{
+    static const char text[] =
+        "{ \"method\": \"isph\", \"dimension\": 2, \"threads\": 1, \"spacing\": 0.02, \"end_time\": 10,"
+        "\"domain\": { \"min\": [0, 0], \"max\": [0.8, 0.8] }, \"fluids\": [ { \"name\": \"water\","
+        "\"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [0.4, 0.42] } },"
+        "{ \"box\": { \"min\": [0.4, 0], \"max\": [0.8, 0.4] } } ] } ] }";
+    tobi_step_info info;
+    tobi_world *w;
+    double least = INFINITY, most = 0;
+    (void)state;
+    OK(start_scene(text, &w, &err));
+    OK(tobi_world_advance(w, 8, &info, &err));
+    for (int k = 1; k <= 40; k++) {
+        OK(tobi_world_advance(w, 8 + 0.05*k, &info, &err));
+        least = fmin(least, info.kinetic_energy);
+        most = fmax(most, info.kinetic_energy);
+    }
+    print_message("a slosh of %.2g J/m is %.2g J/m at least after 8 s\n", most, least);
+    assert_true(least < 0.06);
+    assert_true(most > 0.2 && most < 0.45);
     tobi_world_destroy(w);
 }
 
@@ -504,6 +530,7 @@ int main(void)
         cmocka_unit_test(water_around_a_disc_rests),
         cmocka_unit_test(a_square_in_a_full_vessel),
         cmocka_unit_test(a_pool_rests),
+        cmocka_unit_test(a_slosh_stays_clean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

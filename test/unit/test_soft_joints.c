@@ -202,7 +202,7 @@ static void bear_block(const char *method, const char *clamped_to)
         if (joined) join(world, "left", "plank", NULL, 0.15, 0.1625);
         if (joined) join(world, "right", "plank", NULL, 0.45, 0.1625);
         OK(tobi_world_start(world, &err));
-        m[joined] = average(world, 0.12, 0.25);
+        m[joined] = average(world, 0.12, 0.5);
         height[joined] = find_height(world);
         tobi_world_destroy(world);
     }
