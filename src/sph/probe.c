@@ -309,14 +309,29 @@ static double press_side(tobi_system *s, int axis, int end, const double low[3],
     return t[0]*length*width/(double)(w.rows*w.columns);
 }
 
+typedef struct extent { const tobi_system *s; int axis; } extent;
+
+/* Along an axis, m: totals[6]: from the lowest particle to the upper side; totals[7]: the highest. */
+static void find_extent(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const extent *e = view;
+    for (int64_t i = begin; i < end; i++) {
+        const double x = (&e->s->particles.position[i].x)[e->axis];
+        totals[6] = fmax(totals[6], e->s->box.size[e->axis] - x);
+        totals[7] = fmax(totals[7], x);
+    }
+}
+
 void tobi_probe_sides(tobi_system *s, double force[3])
 {
-    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
-    for (int64_t i = 0; i < s->particles.count; i++)
-        for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], (&s->particles.position[i].x)[a]);
-            high[a] = fmax(high[a], (&s->particles.position[i].x)[a]);
-        }
+    double low[3] = { 0 }, high[3] = { 0 };
+    for (int a = 0; a < s->box.dimension; a++) {
+        const extent e = { s, a };
+        double t[TOBI_TOTALS];
+        tobi_launch(&s->sim->exec, TOBI_HOST(find_extent, 0, 2), &e, 0, s->particles.count, t);
+        low[a] = s->box.size[a] - t[6];
+        high[a] = t[7];
+    }
     for (int a = 0; a < 3; a++) {
         force[a] = 0;
         for (int end = 0; a < s->box.dimension && end < 2 && !s->box.periodic[a]; end++)
