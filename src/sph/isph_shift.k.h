@@ -25,22 +25,24 @@ TOBI_FN void isph_shift_soft(const isph_view *v, int64_t i, isph_shift_acc *a)
     isph_soft_normal(v, i, n);
     ISPH_SOFT_LINKS(v, i, k) {
         const sph_soft_link *l = &v->soft[k];
-        const double speed = isph_soft_speed(v, i, l, n)/v->slope;
+        const double jump = isph_soft_speed(v, i, l, n), speed = jump/v->slope;
         double r2 = 0;
         for (int c = 0; c < 3; c++) r2 += (double)l->gradient[c]*l->gradient[c]/((double)l->rate*l->rate);
         const double r = sqrt(r2), push = ISPH_PUSH*isph_larger(ISPH_CORE*v->spacing - r, 0)/(r + 1e-20);
         for (int b = 0; b < 3; b++) {
             core[b] -= push*l->gradient[b]/l->rate;
             bend[b] += speed*n[b]*l->rate;
-            low[b] = -isph_larger(-low[b], -v->slope*speed*n[b]);
-            high[b] = isph_larger(high[b], v->slope*speed*n[b]);
+            if (jump*n[b] < low[b]) low[b] = jump*n[b];
+            if (jump*n[b] > high[b]) high[b] = jump*n[b];
             for (int c = 0; c < 3; c++) slope[3*b + c] -= speed*n[b]*l->gradient[c];
         }
     }
-    for (int b = 0; b < 3; b++) a->core[b] = isph_first(core[b]);
-    for (int b = 0; b < 3; b++) a->bend[b] = isph_first(bend[b]);
-    for (int b = 0; b < 3; b++) a->low[b] = isph_first(low[b]);
-    for (int b = 0; b < 3; b++) a->high[b] = isph_first(high[b]);
+    for (int b = 0; b < 3; b++) {
+        a->core[b] = isph_first(core[b]);
+        a->bend[b] = isph_first(bend[b]);
+        a->low[b] = isph_first(low[b]);
+        a->high[b] = isph_first(high[b]);
+    }
     for (int k = 0; k < 9; k++) a->slope[k] = isph_first(slope[k]);
 }
 
@@ -106,8 +108,8 @@ TOBI_FN double isph_limit_change(const isph_shift_acc *s, int a, double change)
 {
     double low = 0, high = 0;
     for (int k = 0; k < TOBI_LANES; k++) {
-        low = -isph_larger(-low, -lane_at(s->low[a], k));
-        high = isph_larger(high, lane_at(s->high[a], k));
+        if (lane_at(s->low[a], k) < low) low = lane_at(s->low[a], k);
+        if (lane_at(s->high[a], k) > high) high = lane_at(s->high[a], k);
     }
     return isph_clamp(change, low, high);
 }
