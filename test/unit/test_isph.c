@@ -156,7 +156,6 @@ static void flat_surfaces_are_exact(void **state)
     tobi_world_def w = make_def(0.3);
     tobi_isph_def m = tobi_default_isph_def();
     m.tolerance = 1e-8;
-    m.volume_gain = 0;      /* the second row is short of volume, and would pull */
     w.time_step = 1e-3;
     OK(tobi_world_create(&w, &m, &world, &err));
     add_water(world);
