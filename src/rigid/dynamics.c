@@ -57,8 +57,9 @@ void tobi_rigid_follow(tobi_dynamics_state *d)
     for (int k = 0; k < d->count; k++) tobi_shape_follow(&d->shapes[k], &d->bodies[k]);
 }
 
+/* Adds to force and torque; *bits: the axes to hold from now on. */
 static tobi_status run_control(tobi_body *b, double t, double dt, double force[3], double torque[3],
-                               tobi_error *err)
+                               double *bits, tobi_error *err)
 {
     tobi_rigid *r = &b->rigid;
     tobi_control_input in = { .time = t, .mass = r->mass, .phase = (int)r->phase,
@@ -94,7 +95,7 @@ static tobi_status run_control(tobi_body *b, double t, double dt, double force[3
     if (b->swimmer) memcpy(b->swimmer->next_steer, out.steer, sizeof out.steer);
     if (out.phase != in.phase) r->phase_start = t;
     r->phase = out.phase;
-    r->hold = hold;
+    *bits = hold;
     vec3_add_scaled(force, force, 1, out.force);
     vec3_add_scaled(torque, torque, 1, out.torque);
     return TOBI_OK;
@@ -122,14 +123,17 @@ static void kick_joint(const tobi_dynamics_state *d, tobi_body *b, double dt, co
     tobi_joint_stop(&b->rigid, dt, PLASTIC, none);
 }
 
-/* Velocities after all forces but contact (R.5). Air resistance acts on what the other forces made. */
+/* Velocities after all forces but contact (R.5). Air resistance acts on what the other forces made. Liquid
+   and solids pushed a body that was held as one that cannot give way: let go now, it does not take their
+   impulse, or the weight of all that it carried would throw it. */
 static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double dt, tobi_error *err)
 {
     tobi_rigid *r = &b->rigid;
     double force[3], torque[3], keep = tobi_rigid_keep(r, dt), span = r->span > 0 ? r->span : dt;
+    double hold = r->hold;
     memcpy(force, r->force, sizeof force);
     memcpy(torque, r->torque, sizeof torque);
-    if (r->control) TOBI_TRY(run_control(b, t, dt, force, torque, err));
+    if (r->control) TOBI_TRY(run_control(b, t, dt, force, torque, &hold, err));
     vec3_add_scaled(force, force, 1, r->inertial);
     vec3_add_scaled(torque, torque, 1, r->inertial + 3);
     tobi_line_load now = { 0 }, mean = { 0 };
@@ -156,6 +160,9 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
     r->span = 0;
     if (r->joint.kind) kick_joint(d, b, dt, impulse);
     else tobi_rigid_apply_locks(r);
+    if (hold == r->hold) return TOBI_OK;
+    r->hold = hold;
+    tobi_rigid_apply_locks(r);
     return TOBI_OK;
 }
 
