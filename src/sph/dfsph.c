@@ -52,8 +52,8 @@ typedef struct dfsph {
     tobi_multigrid grid;
     sph_undo undo;
     /* survives a restart */
-    struct { double speed, head, dt, vessel, low, level; } memory;   /* vessel: SPH_VESSEL_*; low, level:
-                                     drops of the free surface and of still water, m             */
+    struct { double speed, head, dt, vessel, low, level, open; } memory;   /* vessel: SPH_VESSEL_*; the
+                                     last three: drops of the free surface, still water, openings in it, m  */
     /* of the step at hand */
     double motion_dt;             /* step that motion alone allows, s                            */
     double diagonal;              /* mean diagonal of the operator                               */
@@ -119,7 +119,7 @@ static int list_memory(tobi_system *s, double **values)
 {
     dfsph *m = s->state;
     *values = &m->memory.speed;
-    return 6;
+    return 7;
 }
 
 /* dt <= min(cfl d/|v|, cfl d/(2 sqrt(|p|/rho)), 0.25 sqrt(d/g), 0.8/(nu rate)) with the rate of the
@@ -424,8 +424,8 @@ static tobi_status relax_lattice(tobi_system *s, dfsph *m, double *clock, tobi_e
 /* The level of still water follows the free surface of the last step. */
 static void set_reference(tobi_system *s, dfsph *m)
 {
-    sph_reference_move(s, &m->view.reference_before, m->def.still_water ? m->memory.low : 0,
-                   fmax(m->memory.speed, s->sim->body_speed), &m->memory.level);
+    sph_reference_move(s, &m->view.reference_before, m->def.still_water ? m->memory.low : 0, m->memory.open,
+                       fmax(m->memory.speed, s->sim->body_speed), &m->memory.level);
 }
 
 static void restore_velocities(tobi_system *s, const tobi_float4 *kept)
@@ -494,6 +494,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);
     m->memory.low = sph_reference_low(s);
+    m->memory.open = sph_reference_open(s, m->memory.low);
     return TOBI_OK;
 }
 

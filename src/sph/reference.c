@@ -1,6 +1,7 @@
 /* The level below which water counts as still follows the lowest part of the free surface: down at
    once, up slowly. Drawback: one level for the whole vessel. */
 #include "sph/state.h"
+#include "sph/around.h"
 #include "sph/hydrostatic.h"
 #include "sph/reference.h"
 #include "geom/vec3.h"
@@ -11,6 +12,9 @@
 static const double COVER = 1, RAMP = 3, REST = 0.5;
 /* Of gravity: what acts besides it in water that is still at rest. */
 static const double DRIVEN = 0.3;
+/* Support radii that a look along an axis goes: farther than across a void behind a body. Spacings beside it
+   within which a particle ends it. */
+static const double LOOK = 3, ASIDE = 0.75;
 enum { DROPS = 1024 };
 /* Spacings: a drop at most, however high the domain is. */
 static const double DROP_MOST = 0.25;
@@ -56,24 +60,82 @@ static double find_middle(const int64_t n[DROPS], double scale)
     return (k + 0.5)/scale;
 }
 
-double sph_reference_low(tobi_system *s)
+/* The depth of the surface but for the few deepest particles; *middle: the median of all, m. */
+static double find_low(const tobi_system *s, double *middle)
 {
-    sph_state *state = sph_of(s);
+    const sph_state *state = sph_of(s);
     int64_t n[DROPS] = {0}, count = s->particles.count;
     const double all = 1.0001*state->lowest, range = fmin(all, DROPS*DROP_MOST*s->smoothing.spacing);
     const double top = all - range, scale = DROPS/range;
     const counting view = { sph_fields_of(&s->particles)->surface_depth, top, scale, n };
     if (!(state->lowest > 0)) return 0;
     tobi_loop(s->sim->exec.threads, count, 0, count_drops, &view);
-    state->middle = top + find_middle(n, scale);
+    *middle = top + find_middle(n, scale);
     double few = 1 + 0.02*(s->box.dimension == 3 ? cbrt((double)count*(double)count) : sqrt((double)count));
     int k = DROPS - 1;
     for (int64_t deeper = n[k]; k > 0 && (double)deeper <= few; deeper += n[k]) k--;
     return top + k/scale;
 }
 
+double sph_reference_low(tobi_system *s) { return find_low(s, &sph_of(s)->middle); }
+
+/* --- surfaces that open in the depth --------------------------------------------------------------- */
+
+/* Bits of `met`: 2 axis, and 1 more for the way back. */
+typedef struct look { double length, aside; int met; } look;
+
+static void meet(void *user, int64_t i, const double d[3])
+{
+    look *l = user;
+    (void)i;
+    for (int a = 0; a < 3; a++) {
+        const double across = vec3_dot(d, d) - d[a]*d[a];
+        if (d[a] != 0 && fabs(d[a]) < l->length && across < l->aside*l->aside)
+            l->met |= 1 << (2*a + (d[a] < 0));
+    }
+}
+
+static int meets_body(const tobi_system *s, const double from[3], const double to[3])
+{
+    for (int k = 0; k < s->sim->body_count; k++) {
+        const tobi_body *b = &s->sim->bodies[k];
+        if (!b->is_absent && tobi_bvh_segment_hits(b->bvh, from, to)) return 1;
+    }
+    return 0;
+}
+
+/* Whether nothing but air is to be seen from a particle along one of the axes. */
+static int looks_out(const tobi_system *s, int64_t i)
+{
+    const tobi_double3 *p = &s->particles.position[i];
+    const double x[3] = { p->x, p->y, p->z };
+    look l = { .length = LOOK*s->smoothing.h, .aside = ASIDE*s->smoothing.spacing };
+    const sph_range cells = sph_cells_around(s, x, l.length);
+    sph_visit(s, x, &cells, meet, &l);
+    for (int way = 0; way < 2*s->box.dimension; way++) {
+        const int a = way/2;
+        double to[3] = { x[0], x[1], x[2] };
+        to[a] += way%2 ? -l.length : l.length;
+        if (l.met >> way & 1 || (!s->box.periodic[a] && !(to[a] >= 0 && to[a] <= s->box.size[a]))) continue;
+        if (!meets_body(s, x, to)) return 1;
+    }
+    return 0;
+}
+
+double sph_reference_open(tobi_system *s, double low)
+{
+    const tobi_reference *w = &sph_of(s)->reference;
+    float *depth = sph_fields_of(&s->particles)->surface_depth;
+    const double least = w->level + w->cover;      /* still water presses below */
+    double middle;
+    if (!(w->push > 0 && low > least) || s->sim->soft.solids) return 0;
+    for (int64_t i = 0; i < s->particles.count; i++)
+        if (!(depth[i] > least) || !looks_out(s, i)) depth[i] = 0;
+    return find_low(s, &middle);
+}
+
 /* Down with the surface, but not faster than anything moves: a void that opens in the depth, as behind a
-   body that sets off, is no part of it. Up slowly. */
+   body that sets off, is no part of it, where it does not look out. Up slowly. */
 static double follow(const tobi_system *s, double before, double low, double speed)
 {
     double g = 0;
@@ -113,11 +175,12 @@ int sph_reference_begins(const tobi_system *s)
     return vec3_dot(more, more) <= DRIVEN*DRIVEN*vec3_dot(g, g);
 }
 
-void sph_reference_move(tobi_system *s, tobi_reference *before, double low, double speed, double *level)
+void sph_reference_move(tobi_system *s, tobi_reference *before, double low, double open, double speed,
+                        double *level)
 {
     sph_reference_set(s, *level);
     *before = sph_of(s)->reference;
-    *level = has_lost_support(s) || is_driven(s) ? 0 : follow(s, *level, low, speed);
+    *level = has_lost_support(s) || is_driven(s) ? 0 : fmax(follow(s, *level, low, speed), open);
 }
 
 typedef struct referring { const tobi_system *s; int sign; } referring;

@@ -25,7 +25,7 @@ typedef struct wcsph {
     sph_view view;
     const sph_kernels *kernel;
     /* survives a restart; vessel: SPH_VESSEL_*; low, level: depths of the surface and of still water, m */
-    struct { double speed, vessel, low, level; } memory;
+    struct { double speed, vessel, low, level, open; } memory;
     double sound;                                 /* m/s                                              */
     int rests;                                    /* 1: water begins at rest                          */
     double compliance;                            /* m2/kg, of the bodies: tobi_couple_compliance     */
@@ -75,7 +75,7 @@ static int list_memory(tobi_system *s, double **values)
 {
     wcsph *m = s->state;
     *values = &m->memory.speed;
-    return 4;
+    return 5;
 }
 
 static void bind_view(tobi_system *s, wcsph *m)
@@ -198,13 +198,14 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     double clock = tobi_clock();
     sph_use_dt(s, &m->view);
     sph_set_body_velocities(s, &clock);
-    sph_reference_move(s, &m->view.reference_before, m->def.still_water ? m->memory.low : 0,
-                   fmax(m->memory.speed, s->sim->body_speed), &m->memory.level);
+    sph_reference_move(s, &m->view.reference_before, m->def.still_water ? m->memory.low : 0, m->memory.open,
+                       fmax(m->memory.speed, s->sim->body_speed), &m->memory.level);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     sph_openings_mark(s, &m->view);
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
     m->memory.low = find_surface(s);
+    m->memory.open = sph_reference_open(s, m->memory.low);
     return TOBI_OK;
 }
 
