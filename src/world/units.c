@@ -1,0 +1,95 @@
+/* Notes on numbers that are likely in other units than metres, kilograms and seconds: each is possible, and
+   seldom meant. Drawback: a rule of thumb each, wide enough to say nothing of tanks, rivers and drops. */
+#include "base/error.h"
+#include "geom/vec3.h"
+#include "sph/stages.h"
+#include "world/world.h"
+#include <math.h>
+#include <stdio.h>
+
+/* kg/m3: no liquid is lighter, gases are. Share of the liquid's density below which no method is trusted with
+   a free body; and above which none is made of a solid. */
+static const double GAS = 50, LIGHTEST = 0.01, HEAVIEST = 50;
+/* m/s2: some thirty times the earth's. */
+static const double STRONG = 300;
+/* m, and the share of its height that the liquid falls until the end: more than a first look takes. */
+static const double HIGH = 10, FALLS = 0.1;
+/* Steps until the end that viscosity alone asks for, and their length over that of a fall by a spacing. */
+static const double MANY = 1e5, SHORT = 0.05;
+
+static tobi_status note_gas(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    double least, most;
+    char text[240];
+    tobi_system_densities(s, &least, &most);
+    if (!(most < GAS) || least < most) return TOBI_OK;      /* of two liquids the ratio counts */
+    snprintf(text, sizeof text, "its density is %.3g kg/m3, that of a gas; water has 1000 kg/m3\n", most);
+    return tobi_world_add_notes(w, "fluid", s->fluid[0].name, text, err);
+}
+
+static tobi_status note_bodies(tobi_world *w, tobi_error *err)
+{
+    double least, most;
+    char text[240];
+    tobi_system_densities(&w->system[0], &least, &most);
+    for (int k = 0; k < w->sim.body_count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        const double density = b->rigid.mass/b->rest.volume, part = density/most;
+        if (b->rigid.kind == TOBI_PRESCRIBED || !(part < LIGHTEST || part > HEAVIEST)) continue;
+        snprintf(text, sizeof text, "its density is %.3g kg/m3, %.3g times that of the liquid: are both in "
+                 "kg/m3? %s\n", density, part, part < 1 ? "Lighter than 0.01 times it bodies do not float as "
+                 "they should" : "Water has 1000 kg/m3");
+        TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
+    }
+    return TOBI_OK;
+}
+
+static tobi_status note_gravity(tobi_world *w, double g, tobi_error *err)
+{
+    char text[240];
+    if (!(g > STRONG)) return TOBI_OK;
+    snprintf(text, sizeof text, "is %.4g m/s2, %.4g times that of the earth: are lengths in metres?\n", g,
+             g/9.81);
+    return tobi_world_add_notes(w, "world", "gravity", text, err);
+}
+
+/* Lengths in millimetres make a puddle an ocean, in which nothing happens within its seconds. */
+static tobi_status note_size(tobi_world *w, double g, tobi_error *err)
+{
+    const double end = w->sim.def.end_time, height = w->system[0].start_head/g, fall = 0.5*g*end*end;
+    char text[240];
+    if (w->sim.opening_count > 0) return TOBI_OK;      /* their speed counts as a height, too */
+    if (!(height > HIGH && end > 0 && fall < FALLS*height)) return TOBI_OK;
+    snprintf(text, sizeof text, "is %.3g s, in which things fall by %.3g m, and the liquid is %.4g m high: "
+             "are lengths in metres?\n", end, fall, height);
+    return tobi_world_add_notes(w, "world", "end_time", text, err);
+}
+
+static tobi_status note_viscosity(tobi_world *w, double g, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    const double step = sph_viscous_dt(s), fall = 0.25*sqrt(s->smoothing.spacing/fmax(g, 1e-12));
+    int most = 0;
+    char text[240];
+    if (!(w->sim.def.end_time/step > MANY && step < SHORT*fall) || w->sim.def.time_step > 0) return TOBI_OK;
+    for (int f = 1; f < s->fluid_count; f++) {
+        const tobi_fluid *a = &s->fluid[f], *b = &s->fluid[most];
+        if (a->viscosity/a->density > b->viscosity/b->density) most = f;
+    }
+    snprintf(text, sizeof text, "its viscosity, %.4g Pa s, allows steps of %.2g s, %.0f of them until %g s; "
+             "water has 0.001 Pa s, honey 10\n", s->fluid[most].viscosity, step, w->sim.def.end_time/step,
+             w->sim.def.end_time);
+    return tobi_world_add_notes(w, "fluid", s->fluid[most].name, text, err);
+}
+
+tobi_status tobi_world_note_units(tobi_world *w, tobi_error *err)
+{
+    const double g = vec3_length(w->sim.def.gravity);
+    TOBI_TRY(note_gravity(w, g, err));
+    if (w->system[0].fluid_count == 0) return TOBI_OK;
+    TOBI_TRY(note_gas(w, err));
+    TOBI_TRY(note_bodies(w, err));
+    if (g > 0) TOBI_TRY(note_size(w, g, err));
+    return w->system[0].method->solids ? TOBI_OK : note_viscosity(w, g, err);
+}

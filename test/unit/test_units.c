@@ -1,0 +1,92 @@
+/* Numbers that are likely in other units are told, tanks are not. */
+#include "calls.h"
+#include "tobiuo/tobiuo.h"
+#include <math.h>
+
+/* Of a column of water 0.4 m high and a box in it; each number times the usual one. */
+typedef struct factors { double length, density, body, viscosity, gravity; } factors;
+
+static const factors USUAL = { 1, 1, 1, 1, 1 };
+
+/* How many notes have these words; how many there are at all. */
+static int count_notes(const char *method, factors x, const char *words, int *all)
+{
+    tobi_world_def def = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_body_def b = tobi_default_body_def();
+    tobi_world *w;
+    int found = 0;
+    def.method = method;
+    def.dimension = 2;
+    def.spacing = 0.02*x.length;
+    def.end_time = 1;
+    def.gravity[1] = -9.81*x.gravity;
+    def.gravity[2] = def.domain_max[2] = 0;
+    def.domain_max[0] = x.length;
+    def.domain_max[1] = 0.6*x.length;
+    fluid.name = "water";
+    fluid.density = 1000*x.density;
+    fluid.viscosity = 0.001*x.viscosity;
+    fill.box_max[0] = x.length;
+    fill.box_max[1] = 0.4*x.length;
+    fill.box_max[2] = 0;
+    b.name = "box";
+    b.dynamics = TOBI_FREE;
+    b.density = 500*x.body;
+    for (int a = 0; a < 2; a++) b.box_min[a] = 0.3*x.length, b.box_max[a] = 0.4*x.length;
+    OK(tobi_world_create(&def, NULL, &w, &err));
+    OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
+    OK(tobi_world_add_body(w, &b, &err));
+    OK(tobi_world_start(w, &err));
+    for (*all = 0; tobi_world_note(w, *all); ++*all) found += strstr(tobi_world_note(w, *all), words) != NULL;
+    tobi_world_destroy(w);
+    return found;
+}
+
+static void expect(factors x, const char *words)
+{
+    static const char *methods[] = { "dfsph", "isph", "eisph", "wcsph" };
+    int all;
+    for (int k = 0; k < 4; k++)
+        if (count_notes(methods[k], x, words, &all) != 1) fail_msg("%s: no note on '%s'", methods[k], words);
+}
+
+static void other_units_are_told(void **state)
+{
+    factors x = USUAL;
+    (void)state;
+    x.length = 1000;
+    expect(x, "end_time': is 1 s, in which things fall by 4.91 m, and the liquid is 400 m high");
+    x = USUAL, x.density = 1e-3, x.body = 1e-3;
+    expect(x, "'water': its density is 1 kg/m3, that of a gas");
+    x = USUAL, x.body = 1e-3;
+    expect(x, "'box': its density is 0.5 kg/m3, 0.0005 times that of the liquid");
+    x = USUAL, x.density = 1e-3;
+    expect(x, "'box': its density is 500 kg/m3, 500 times that of the liquid");
+    x = USUAL, x.viscosity = 1e7;
+    expect(x, "'water': its viscosity, 1e+04 Pa s, allows steps of");
+    x = USUAL, x.gravity = 1000;
+    expect(x, "gravity': is 9810 m/s2, 1000 times that of the earth");
+}
+
+static void a_tank_is_not(void **state)
+{
+    int all;
+    (void)state;
+    count_notes("dfsph", USUAL, "", &all);
+    if (all > 1) fail_msg("%d notes", all);               /* particles that were cut out */
+    factors x = USUAL;
+    x.length = 20, x.body = 15, x.viscosity = 1e4;        /* a harbour, of steel, in honey */
+    count_notes("isph", x, "", &all);
+    if (all > 1) fail_msg("%d notes", all);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(other_units_are_told),
+        cmocka_unit_test(a_tank_is_not),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
