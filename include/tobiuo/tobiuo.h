@@ -15,6 +15,9 @@
    nothing are answered with TOBI_INVALID or TOBI_NOT_FOUND by calls that return a status, with 0 or NULL by
    the others. A world that was destroyed must not be used; dev builds stop at an assert.
 
+   Names: a fluid, solid or body has a name that no other of the three has, and so have probes, lines and
+   joints, each among themselves: TOBI_INVALID. The default names serve for one of each.
+
    Threads: different worlds may be used from different threads, one world from one thread at a time. After a
    fork the child must not use worlds of its parent, whose threads it has not; exec is fine.
    Callbacks (motions, flows, control programs, stop) are called from the thread that calls the library. They

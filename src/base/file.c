@@ -20,6 +20,7 @@ static const char *name_kind(mode_t mode)
 tobi_status tobi_file_check_target(const char *path, tobi_error *err)
 {
     struct stat info;
+    if (!*path) return tobi_fail(err, TOBI_INVALID, "cannot write a file: its path is empty");
     if (lstat(path, &info) != 0 || S_ISREG(info.st_mode)) return TOBI_OK;
     return tobi_fail(err, TOBI_INVALID, "cannot write %s: it is a %s; only a plain file is replaced", path,
                      name_kind(info.st_mode));

@@ -43,6 +43,7 @@ tobi_status tobi_plain_open(const char *path, const char *what, int64_t limit, F
 {
     struct stat info;
     *file = NULL;
+    if (!*path) return tobi_fail(err, TOBI_NOT_FOUND, "%s: its path is empty", what);
     if (stat(path, &info) != 0) return fail_errno(path, what, errno, err);
     TOBI_TRY(judge(path, what, limit, &info, err));
     int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);

@@ -169,10 +169,19 @@ double tobi_system_pushed_speed(const tobi_system *s)
 /* Spacings in a step: what moves less is at rest but for rounding, though nothing drives it. */
 static const double STILL = 1e-6;
 
-double tobi_system_speed_scale(const tobi_system *s)
+/* m2/s2 */
+static double fall_head(const tobi_system *s)
 {
     double fall = opening_head(s);
     for (int a = 0; a < s->box.dimension; a++) fall += tobi_simulation_pull(s->sim, a)*s->box.size[a];
+    return fall;
+}
+
+double tobi_system_fall_speed(const tobi_system *s) { return sqrt(2*fall_head(s)); }
+
+double tobi_system_speed_scale(const tobi_system *s)
+{
+    const double fall = fall_head(s);
     const double brought = fmax(2*s->start_speed, fmax(inlet_speed(s), s->pushed_speed));
     const double scale = sqrt(2*fall + 8*tobi_system_capillary(s)) + s->sim->body_speed + brought;
     return s->dt > 0 ? fmax(scale, STILL*s->smoothing.spacing/s->dt) : scale;

@@ -50,7 +50,7 @@ typedef struct tobi_system {
     int64_t step;                   /* its own steps                                         */
     double gravity[3];              /* m/s2, what particles feel, see sph/hydrostatic.h       */
     double start_speed;             /* m/s, fastest particle at the start, or point of a body
-                                       since                                               */
+                                       since, or fall in a gravity that was changed        */
     double pushed_speed;            /* m/s, the most so far of tobi_system_pushed_speed      */
     double start_head;              /* m2/s2, g times the height of the fluid at the start   */
     tobi_step_info info;            /* of the last step                                      */
@@ -171,6 +171,8 @@ double tobi_system_capillary(const tobi_system *s);
 /* A speed nothing in the scene should exceed by much, m/s: free fall across the box and from the pressure of
    outlets, the bodies, the initial velocities, and the flow of inlets and bodies through a narrow place. */
 double tobi_system_speed_scale(const tobi_system *s);
+/* What gravity and the pressure of outlets make of it alone, m/s. */
+double tobi_system_fall_speed(const tobi_system *s);
 /* How many times as fast as what feeds it the liquid in a narrow place may be. */
 enum { TOBI_NARROWEST = 10 };
 /* After a step, m/s: how fast the liquid that bodies with a motion push may be in a narrow place. */

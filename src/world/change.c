@@ -54,6 +54,8 @@ tobi_status tobi_world_set_gravity(tobi_world *w, const double gravity[3], tobi_
     if (memcmp(def.gravity, s->def.gravity, sizeof def.gravity) == 0) return TOBI_OK;
     TOBI_TRY(tobi_world_check_whole(w, err));
     if (s->step > 0) TOBI_TRY(tobi_world_refresh(w, err));
+    for (int k = 0; k < w->system_count && s->step > 0; k++)      /* what it has set in motion stays so */
+        w->system[k].start_speed = fmax(w->system[k].start_speed, tobi_system_fall_speed(&w->system[k]));
     put_gravity(w, def.gravity);
     if (w->dynamics) tobi_rigid_set_gravity(w->dynamics, def.gravity);
     follow_gravity(w, 0);

@@ -4,7 +4,7 @@
 #include "base/param.h"
 #include "core/constraint.h"
 #include "geom/vec3.h"
-#include "world/world.h"
+#include "world/names.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -106,6 +106,7 @@ tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more joints");
     if (c->count == TOBI_JOINT_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d joints", TOBI_JOINT_LIMIT);
+    TOBI_TRY(tobi_names_check_joint(w, def->name, err));
     TOBI_TRY(check_bodies(w, def, &j, err));
     TOBI_TRY(tobi_at_key(err, check_axis(def, w->system[0].box.dimension, &j, axis, err), "axis"));
     TOBI_TRY(take_hinge(def, w->system[0].box.dimension, &j, err));

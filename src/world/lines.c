@@ -3,7 +3,7 @@
 #include "base/param.h"
 #include "geom/vec3.h"
 #include "rigid/lines.h"
-#include "world/world.h"
+#include "world/names.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -82,6 +82,7 @@ tobi_status tobi_world_add_line(tobi_world *w, const tobi_line_def *def, tobi_er
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more lines");
     if (w->line_count == TOBI_LINE_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d lines", TOBI_LINE_LIMIT);
+    TOBI_TRY(tobi_names_check_line(w, def->name, err));
     TOBI_TRY(check_bodies(w, def, &l, err));
     l.length = def->length > 0 ? def->length : sqrt(vec3_distance2(def->point, def->to));
     TOBI_TRY(check_kind(w, def, &l, err));

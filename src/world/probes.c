@@ -5,7 +5,7 @@
 #include "sph/sensor.h"
 #include "base/param.h"
 #include "geom/vec3.h"
-#include "world/world.h"
+#include "world/names.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,6 +94,7 @@ tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_
     TOBI_TRY(tobi_at_key(err, find_body(w, def, &body, err), "body"));
     if (w->probe_count == TOBI_PROBE_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d probes", TOBI_PROBE_LIMIT);
+    TOBI_TRY(tobi_names_check_probe(w, def->name, err));
     tobi_probe *more = realloc(w->probes, (size_t)(w->probe_count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a probe");
     w->probes = more;

@@ -3,7 +3,7 @@
 #include "base/param.h"
 #include "geom/texture.h"
 #include "world/mixture.h"
-#include "world/world.h"
+#include "world/names.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -81,6 +81,12 @@ static tobi_status measure_region(const tobi_system *s, const char *name, const 
     return TOBI_OK;
 }
 
+/* Takes the last `count` regions away again. */
+static void drop_regions(tobi_world *w, int count)
+{
+    for (int k = 0; k < count; k++) tobi_mesh_free(&w->regions[--w->region_count].shape);
+}
+
 /* Appends the regions of the next fluid or solid of a system; *volume is their sum, m3 (2-D: m2). */
 static tobi_status add_regions(tobi_world *w, const tobi_system *s, const char *kind, const char *name,
                                const tobi_fill_def *fills, int count, double *volume, tobi_error *err)
@@ -88,7 +94,6 @@ static tobi_status add_regions(tobi_world *w, const tobi_system *s, const char *
     tobi_region *more = realloc(w->regions, (size_t)(w->region_count + count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for regions");
     w->regions = more;
-    int first = w->region_count;
     char whose[160];
     snprintf(whose, sizeof whose, "%s '%s'", kind, name ? name : "");
     *volume = 0;
@@ -105,18 +110,19 @@ static tobi_status add_regions(tobi_world *w, const tobi_system *s, const char *
         *volume += r->volume;
         if (status == TOBI_OK) status = tobi_world_add_notes(w, kind, name, r->shape.notes, err);
         if (status == TOBI_OK) continue;
-        while (w->region_count > first) tobi_mesh_free(&w->regions[--w->region_count].shape);
+        drop_regions(w, k + 1);
         return status;
     }
     return TOBI_OK;
 }
 
 /* All regions are checked before any of them is read. */
-static tobi_status check_fills(const tobi_fill_def *fills, int count, tobi_error *err)
+static tobi_status check_fills(const tobi_world *w, const tobi_fill_def *fills, int count, tobi_error *err)
 {
-    if (count < 0 || count > TOBI_REGION_LIMIT || (count > 0 && !fills))
+    const int room = TOBI_REGION_LIMIT - w->region_count;
+    if (count < 0 || count > room || (count > 0 && !fills))
         return tobi_fail(err, TOBI_INVALID, "fill_count is %d%s, allowed is 0 to %d", count,
-                         fills ? "" : " and fills is NULL", TOBI_REGION_LIMIT);
+                         fills ? "" : " and fills is NULL", room);
     for (int k = 0; k < count; k++) TOBI_TRY(tobi_param_check(&tobi_fill_table, &fills[k], err));
     return TOBI_OK;
 }
@@ -126,7 +132,7 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
 {
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
-    TOBI_TRY(check_fills(fills, fill_count, err));
+    TOBI_TRY(check_fills(w, fills, fill_count, err));
     tobi_system *s = &w->system[0];
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more fluids");
     TOBI_TRY(tobi_param_check(&tobi_fluid_table, def, err));
@@ -135,12 +141,18 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
                          w->system[0].method->name);
     if (s->fluid_count == TOBI_FLUID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
-    TOBI_TRY(tobi_mixture_add(w, def, err));
-    TOBI_TRY(note_support(w, def, err));
+    const char *name = def->name ? def->name : "fluid";
     double volume;
-    TOBI_TRY(add_regions(w, s, "fluid", def->name, fills, fill_count, &volume, err));
+    TOBI_TRY(tobi_names_check_matter(w, "fluid", name, err));
+    TOBI_TRY(tobi_mixture_add(w, def, err));
+    TOBI_TRY(add_regions(w, s, "fluid", name, fills, fill_count, &volume, err));
+    const tobi_status status = note_support(w, def, err);
+    if (status != TOBI_OK) {
+        drop_regions(w, fill_count);
+        return status;
+    }
     tobi_fluid *f = &s->fluid[s->fluid_count++];
-    snprintf(f->name, sizeof f->name, "%s", def->name ? def->name : "fluid");
+    snprintf(f->name, sizeof f->name, "%s", name);
     f->density = def->density;
     f->viscosity = def->viscosity;
     f->tension = def->surface_tension;
@@ -159,44 +171,59 @@ tobi_status tobi_world_use_solids(tobi_world *w, const tobi_mlsmpm_def *def, tob
     return tobi_world_add_system(w, tobi_method_find("mlsmpm"), def, err);
 }
 
-tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const tobi_fill_def *fills,
-                                 int fill_count, tobi_error *err)
+/* Behind the last solid of a system, not counted yet. */
+static tobi_status make_solid(tobi_world *w, tobi_system *s, const tobi_solid_def *def, const char *name,
+                              double volume, int fill_count, char note[200], tobi_error *err)
 {
-    TOBI_NEED_WORLD(w);
-    TOBI_NEED(def, "the definition");
-    TOBI_TRY(check_fills(fills, fill_count, err));
+    tobi_solid *solid = &s->solids[s->solid_count];
+    *solid = (tobi_solid){ .def = *def };
+    snprintf(solid->name, sizeof solid->name, "%s", name);
+    if (def->clamped_to && !(solid->clamped_to = strdup(def->clamped_to)))
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a solid");
+    if (def->mass > 0 && volume > 0) solid->def.density = def->mass/volume;
+    if (s->method->accept) TOBI_TRY(s->method->accept(s, s->solid_count, note, err));
+    const tobi_texture *coordinates = NULL;
+    for (int k = w->region_count - fill_count; k < w->region_count; k++)
+        if (w->regions[k].shape.texture) coordinates = w->regions[k].shape.texture;
+    return tobi_world_read_image(w, "solid", name, def->texture, coordinates, err);
+}
+
+static tobi_status add_solid(tobi_world *w, tobi_system *s, const tobi_solid_def *def,
+                             const tobi_fill_def *fills, int fill_count, tobi_error *err)
+{
+    const char *name = def->name ? def->name : "solid";
     double volume;
-    if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more solids");
-    TOBI_TRY(tobi_param_check(&tobi_solid_table, def, err));
-    if (!tobi_world_solids(w)) TOBI_TRY(tobi_world_add_system(w, tobi_method_find("mlsmpm"), NULL, err));
-    tobi_system *s = tobi_world_solids(w);
+    char note[200] = "";
+    TOBI_TRY(tobi_names_check_matter(w, "solid", name, err));
     if (s->solid_count == TOBI_SOLID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d solids", TOBI_SOLID_LIMIT);
     tobi_solid *more = realloc(s->solids, (size_t)(s->solid_count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a solid");
     s->solids = more;
-    TOBI_TRY(add_regions(w, s, "solid", def->name, fills, fill_count, &volume, err));
-    const struct tobi_texture *coordinates = NULL;
-    for (int k = w->region_count - fill_count; k < w->region_count; k++)
-        if (w->regions[k].shape.texture) coordinates = w->regions[k].shape.texture;
-    const tobi_status status =
-        tobi_world_read_image(w, "solid", def->name ? def->name : "", def->texture, coordinates, err);
-    for (int k = 0; k < fill_count && status != TOBI_OK; k++)
-        tobi_mesh_free(&w->regions[--w->region_count].shape);
-    TOBI_TRY(status);
-    tobi_solid *solid = &s->solids[s->solid_count++];
-    *solid = (tobi_solid){ .def = *def };
-    snprintf(solid->name, sizeof solid->name, "%s", def->name ? def->name : "solid");
-    if (def->clamped_to) {
-        const size_t size = strlen(def->clamped_to) + 1;
-        solid->clamped_to = malloc(size);
-        if (!solid->clamped_to) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a solid");
-        memcpy(solid->clamped_to, def->clamped_to, size);
+    TOBI_TRY(add_regions(w, s, "solid", name, fills, fill_count, &volume, err));
+    const tobi_status status = make_solid(w, s, def, name, volume, fill_count, note, err);
+    if (status != TOBI_OK) {
+        free(s->solids[s->solid_count].clamped_to);
+        drop_regions(w, fill_count);
+        return status;
     }
-    if (def->mass > 0 && volume > 0) solid->def.density = def->mass/volume;
-    char note[200] = "";
-    if (s->method->accept) TOBI_TRY(s->method->accept(s, s->solid_count - 1, note, err));
-    return note[0] ? tobi_world_add_notes(w, "solid", solid->name, note, err) : TOBI_OK;
+    s->solid_count++;
+    return note[0] ? tobi_world_add_notes(w, "solid", name, note, err) : TOBI_OK;
+}
+
+tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const tobi_fill_def *fills,
+                                 int fill_count, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
+    TOBI_TRY(check_fills(w, fills, fill_count, err));
+    if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more solids");
+    TOBI_TRY(tobi_param_check(&tobi_solid_table, def, err));
+    const int alone = !tobi_world_solids(w);
+    if (alone) TOBI_TRY(tobi_world_add_system(w, tobi_method_find("mlsmpm"), NULL, err));
+    const tobi_status status = add_solid(w, tobi_world_solids(w), def, fills, fill_count, err);
+    if (status != TOBI_OK && alone) tobi_world_free_system(&w->system[--w->system_count]);
+    return status;
 }
 
 static tobi_status check_blades(const tobi_world *w, tobi_error *err)

@@ -10,6 +10,7 @@
 #include "world/change.h"
 #include "world/fit.h"
 #include "world/limits.h"
+#include "world/names.h"
 #include "world/note_pieces.h"
 #include "world/openings.h"
 #include "world/overlap.h"
@@ -182,7 +183,8 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     tobi_body_def placed = *def;
     if (!(def->spacing > 0)) placed.spacing = s->sim->def.spacing;
     TOBI_TRY(tobi_body_create(b, &placed, &s->box, pieces, err));
-    tobi_status status = tobi_body_plan_absence(b, &placed, &s->box, err);
+    tobi_status status = tobi_names_check_matter(w, "body", b->name, err);
+    if (status == TOBI_OK) status = tobi_body_plan_absence(b, &placed, &s->box, err);
     if (status == TOBI_OK) status = check_body(w, b, err);
     tobi_at_key(err, status, "%s", tobi_body_shape_key(def));
     if (status == TOBI_OK)

@@ -58,6 +58,7 @@ static void found_in_the_mesh(void **state)
     const double half = 0.5*atan(0.5);
     assert_true(fabs(b->edge[0].ahead[0] + cos(half)) < 1e-9 && fabs(b->edge[0].ahead[2] + sin(half)) < 1e-9);
     def.blade = 0;
+    def.name = "blunt";
     OK(tobi_world_add_body(world, &def, &err));
     assert_int_equal(world->sim.bodies[1].edge_count, 0);
     tobi_world_destroy(world);

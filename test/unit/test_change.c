@@ -101,6 +101,20 @@ static void like_a_definition(void **state)
     }
 }
 
+/* What gravity has set in motion goes on without it. */
+static void gravity_that_ends(void **state)
+{
+    (void)state;
+    static const char *const all[] = { "dfsph", "wcsph", "isph", "eisph", "mlsmpm" };
+    for (int m = 0; m < 5; m++) {
+        tobi_world *world = make_pool(all[m], SLOPE, 0.05);
+        OK(tobi_world_advance(world, 0.05, NULL, &err));
+        OK(tobi_world_set_gravity(world, (double[3]){ 0 }, &err));
+        OK(tobi_world_advance(world, 0.07, NULL, &err));
+        tobi_world_destroy(world);
+    }
+}
+
 static void set_motion(tobi_world *world)
 {
     static double since = 0.01;
@@ -360,7 +374,8 @@ static void ids(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(like_a_definition), cmocka_unit_test(stopped_and_not),
+        cmocka_unit_test(like_a_definition), cmocka_unit_test(gravity_that_ends),
+        cmocka_unit_test(stopped_and_not),
         cmocka_unit_test(pressures_stay),    cmocka_unit_test(water_takes_the_new_weight),
         cmocka_unit_test(energy_of_solids),  cmocka_unit_test(bodies_feel_it),
         cmocka_unit_test(refusals),          cmocka_unit_test(too_deep),

@@ -487,8 +487,13 @@ static void wrong_joints_are_refused(void **state)
     d.kind = 7;
     refuse(world, &d, TOBI_INVALID, "kind");
     d = right, d.to_body = "post";
-    for (int k = 0; k < TOBI_JOINT_LIMIT; k++)
+    char name[16];
+    for (int k = 0; k < TOBI_JOINT_LIMIT; k++) {
         assert_int_equal(tobi_world_add_joint(world, &d, &err), TOBI_OK);
+        if (k == 0) refuse(world, &d, TOBI_INVALID, "joint 'j': joint 0 has that name already");
+        snprintf(name, sizeof name, "j%d", k + 1);
+        d.name = name;
+    }
     refuse(world, &d, TOBI_UNSUPPORTED, "more than 64 joints");
     assert_int_equal(tobi_world_joint_count(world), 64);
     assert_string_equal(tobi_world_joint(world, 0, NULL), "j");

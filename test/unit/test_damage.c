@@ -150,6 +150,7 @@ static tobi_world *make_world(int dimension, int model, int threads)
     solid.model = model;
     for (int breaks = 0; breaks < 2; breaks++) {
         tobi_fill_def fill[2] = { tobi_default_fill_def(), tobi_default_fill_def() };
+        solid.name = breaks ? "brittle" : "whole";
         solid.strength = breaks ? 2e4 : 0;
         solid.fracture_energy = breaks ? 200 : 0;
         for (int side = 0; side < 2; side++) {

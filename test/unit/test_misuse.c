@@ -122,7 +122,7 @@ static void nothing_where_something_must_stand(void **state)
     assert_null(none);
     REFUSED(tobi_world_add_fluid(w, NULL, &fill, 1, &err), TOBI_INVALID, "the definition is NULL");
     REFUSED(tobi_world_add_fluid(w, &fluid, NULL, 2, &err), TOBI_INVALID,
-            "fill_count is 2 and fills is NULL, allowed is 0 to 2048");
+            "fill_count is 2 and fills is NULL, allowed is 0 to 2047");
     REFUSED(tobi_world_add_fluid(w, &fluid, &fill, -1, &err), TOBI_INVALID, "fill_count is -1, allowed is");
     REFUSED(tobi_world_add_solid(w, NULL, &fill, 1, &err), TOBI_INVALID, "the definition is NULL");
     REFUSED(tobi_world_add_body(w, NULL, &err), TOBI_INVALID, "the definition is NULL");
@@ -139,7 +139,65 @@ static void nothing_where_something_must_stand(void **state)
     REFUSED(tobi_world_grid(w, NULL, &err), TOBI_INVALID, "where the grid goes is NULL");
     REFUSED(tobi_world_pieces(w, NULL, &err), TOBI_INVALID, "where the pieces go is NULL");
     REFUSED(tobi_world_save(w, NULL, &err), TOBI_INVALID, "the path is NULL");
+    REFUSED(tobi_world_save(w, "", &err), TOBI_INVALID, "cannot write a file: its path is empty");
+    REFUSED(tobi_world_load(w, "", &err), TOBI_NOT_FOUND, "checkpoint: its path is empty");
     REFUSED(tobi_world_load(w, NULL, &err), TOBI_INVALID, "the path is NULL");
+    tobi_world_destroy(w);
+}
+
+/* What refers to an object by its name must not meet two. */
+static void names_that_are_taken(void **state)
+{
+    (void)state;
+    tobi_world *w = make_world("dfsph");
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_body_def body = tobi_default_body_def();
+    tobi_probe_def probe = tobi_default_probe_def();
+    REFUSED(tobi_world_add_fluid(w, &fluid, NULL, 0, &err), TOBI_INVALID,
+            "fluid 'fluid': fluid 0 has that name already");
+    solid.name = "fluid";
+    REFUSED(tobi_world_add_solid(w, &solid, NULL, 0, &err), TOBI_INVALID,
+            "solid 'fluid': fluid 0 has that name already");
+    solid.name = "block";
+    OK(tobi_world_add_solid(w, &solid, NULL, 0, &err));
+    body.name = "block";
+    body.mesh = TOBI_SOURCE_DIR "/test/meshes/box.obj";
+    for (int a = 0; a < 3; a++) {
+        body.scale[a] = 0.05;
+        body.translation[a] = 0.2;
+    }
+    REFUSED(tobi_world_add_body(w, &body, &err), TOBI_INVALID, "body 'block': solid 0 has that name already");
+    body.name = "ball";
+    OK(tobi_world_add_body(w, &body, &err));
+    REFUSED(tobi_world_add_body(w, &body, &err), TOBI_INVALID, "body 'ball': body 0 has that name already");
+    OK(tobi_world_add_probe(w, &probe, &err));
+    REFUSED(tobi_world_add_probe(w, &probe, &err), TOBI_INVALID,
+            "probe 'probe': probe 0 has that name already");
+    tobi_world_destroy(w);
+}
+
+/* A solid that is refused leaves no region, no name and no method of solids. */
+static void solids_that_are_refused(void **state)
+{
+    (void)state;
+    tobi_world *w = make_world("dfsph");
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    for (int a = 0; a < 3; a++) fill.box_max[a] = 0.4;
+    solid.texture = "none.png";
+    REFUSED(tobi_world_add_solid(w, &solid, &fill, 1, &err), TOBI_INVALID, "has a texture, but no mesh");
+    solid.texture = NULL;
+    solid.strength = 1e3;
+    solid.fracture_energy = 1e-9;
+    solid.clamped_to = "wall";
+    REFUSED(tobi_world_add_solid(w, &solid, &fill, 1, &err), TOBI_INVALID, "solid 'solid': ");
+    assert_int_equal(tobi_world_solid_count(w), 0);
+    OK(tobi_world_use_solids(w, NULL, &err));
+    REFUSED(tobi_world_add_solid(w, &solid, &fill, 1, &err), TOBI_INVALID, "solid 'solid': ");
+    assert_int_equal(tobi_world_solid_count(w), 0);
+    OK(tobi_world_start(w, &err));
+    assert_int_equal(tobi_world_count(w, TOBI_FLUID), 64);
     tobi_world_destroy(w);
 }
 
@@ -380,7 +438,8 @@ int main(void)
         cmocka_unit_test(no_world),
         cmocka_unit_test(no_world_and_no_text),
         cmocka_unit_test(nothing_where_something_must_stand),
-        cmocka_unit_test(times_that_are_none),
+        cmocka_unit_test(names_that_are_taken),
+        cmocka_unit_test(solids_that_are_refused), cmocka_unit_test(times_that_are_none),
         cmocka_unit_test(values_that_are_none),
         cmocka_unit_test(runs),
         cmocka_unit_test(no_object_and_no_text),

@@ -203,6 +203,7 @@ static void solids_stay_apart_and_liquids_have_none(void **state)
     solid_setup s = solid_default(3, D, 4);
     OK(tobi_world_create(&s.world, NULL, &world, &err));
     for (int k = 0; k < 3; k++) {        /* side by side: the second solid is the heaviest */
+        s.solid.name = (const char *[]){ "a", "b", "c" }[k];
         s.solid.density = k == 1 ? 2000 : 1000;
         s.solid.model = k == 2 ? TOBI_STATIONARY : TOBI_NEO_HOOKEAN;
         s.fill.box_min[0] = k;

@@ -28,6 +28,8 @@ static tobi_world *make_tank(int dimension, double gravity)
     return world;
 }
 
+static const char *const names[] = { "a", "b", "c", "d" };
+
 static int add(tobi_world *world, const char *name, int kind, double x, double y, double z)
 {
     tobi_error err;
@@ -62,7 +64,7 @@ static void reads_a_linear_field(void **state)
     tobi_world *world = make_tank(3, -9.81);
     tobi_error err;
     tobi_probe_info info;
-    for (int k = 0; k < 4; k++) add(world, "p", TOBI_PROBE_POINT, at[k][0], at[k][1], at[k][2]);
+    for (int k = 0; k < 4; k++) add(world, names[k], TOBI_PROBE_POINT, at[k][0], at[k][1], at[k][2]);
     int dry = add(world, "dry", TOBI_PROBE_POINT, 0, 0.1, 0.19);
     set_pressure(world, field_at);
     for (int k = 0; k < 4; k++) {
@@ -84,7 +86,7 @@ static void reads_walls_and_corners(void **state)
     tobi_world *world = make_tank(3, 0);
     tobi_error err;
     tobi_probe_info info;
-    for (int k = 0; k < 4; k++) add(world, "p", TOBI_PROBE_POINT, at[k][0], at[k][1], at[k][2]);
+    for (int k = 0; k < 4; k++) add(world, names[k], TOBI_PROBE_POINT, at[k][0], at[k][1], at[k][2]);
     set_pressure(world, even);
     for (int k = 0; k < 4; k++) {
         assert_int_equal(tobi_world_probe(world, k, &info, &err), TOBI_OK);

@@ -246,9 +246,10 @@ static void levels_of_the_main_body_of_water(void **state)
         set_vector(fill[1].box_max, 0.2, flat ? 0.18 : 0.2, flat ? 0 : 0.18);
         OK(tobi_world_add_fluid(world, &f, fill, 2, &err));
         OK(tobi_world_start(world, &err));
+        static const char *const names[] = { "a", "b", "c", "d", "e" };
         const double x[] = { 0.1, 0.1037, 0.05, 0, 0.2 };
         for (int k = 0; k < 5; k++) {
-            const tobi_probe_def p = make("level", TOBI_PROBE_LEVEL, x[k], flat ? 0 : 0.1, 0);
+            const tobi_probe_def p = make(names[k], TOBI_PROBE_LEVEL, x[k], flat ? 0 : 0.1, 0);
             assert_close(measure(world, &p).level, 0.1, 0.05*D, "level");
         }
         tobi_world_destroy(world);

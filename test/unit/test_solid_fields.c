@@ -157,6 +157,7 @@ static tobi_world *make_world(int dimension, int transfer, int threads)
     for (int model = TOBI_NEO_HOOKEAN; model <= TOBI_SAND; model++) {
         tobi_solid_def solid = tobi_default_solid_def();
         tobi_fill_def fill = tobi_default_fill_def();
+        solid.name = (const char *[]){ "a", "b", "c", "d", "e", "f", "g", "h" }[model];
         solid.model = model;
         solid.density = 1000 + 100*model;
         solid.youngs_modulus = 1e5;
@@ -425,7 +426,13 @@ static void many_solids_and_odd_domains(void **state)
     (void)state;
     solid_setup s = solid_default(3, 0.2, 1);
     tobi_world *world = solid_world(&s);
-    for (int k = 1; k < TOBI_SOLID_LIMIT; k++) OK(tobi_world_add_solid(world, &s.solid, &s.fill, 0, &err));
+    char name[16];
+    s.solid.name = name;
+    for (int k = 1; k < TOBI_SOLID_LIMIT; k++) {
+        snprintf(name, sizeof name, "%d", k);
+        OK(tobi_world_add_solid(world, &s.solid, &s.fill, 0, &err));
+    }
+    s.solid.name = "last";
     REFUSED(tobi_world_add_solid(world, &s.solid, &s.fill, 0, &err), TOBI_UNSUPPORTED,
             "more than 255 solids");
     tobi_world_destroy(world);
