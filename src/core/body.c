@@ -141,20 +141,6 @@ void tobi_body_pose_shape(const tobi_body *b, int64_t n, double (*at)[3])
                 at);
 }
 
-tobi_status tobi_body_ask_motion(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
-                                 double (*out)[3], tobi_error *err)
-{
-    TOBI_TRY(b->motion(b->motion_user, t, n, rest, out, err));
-    if (vec3_dot(b->shift, b->shift) > 0)
-        for (int64_t i = 0; i < n; i++) vec3_add_scaled(out[i], out[i], 1, b->shift);
-    for (int64_t i = 0; i < n; i++)
-        if (!isfinite(out[i][0] + out[i][1] + out[i][2]))
-            return tobi_fail(err, TOBI_INVALID, "body '%s': its motion puts a point at (%g, %g, %g) m at "
-                             "t = %.9g s; allowed are finite numbers", b->name, out[i][0], out[i][1],
-                             out[i][2], t);
-    return TOBI_OK;
-}
-
 tobi_status tobi_body_locate(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
                              double (*out)[3], tobi_error *err)
 {

@@ -164,7 +164,7 @@ void tobi_body_follow_absence(tobi_body *b, double t);
 /* Whether it is away, by its vertices. */
 void tobi_body_find_absence(tobi_body *b);
 /* Where the motion, which b has, puts n points at t, with the shift of a piston that absorbs, m, in world
-   coordinates. TOBI_INVALID in words for numbers that are not finite. */
+   coordinates. TOBI_INVALID in words for numbers that are not finite, and for z in 2-D. */
 tobi_status tobi_body_ask_motion(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
                                  double (*out)[3], tobi_error *err);
 /* For a substep: puts a body with a motion where it is `way` s after t, as a rigid body; one that deforms is
