@@ -83,18 +83,29 @@ static tobi_status read_rows(FILE *f, const char *path, int64_t n, tobi_mesh *ou
     return status;
 }
 
+/* Of a file that is no text: those begin with "solid", though some binary ones do, too. */
+static tobi_status refuse_count(const char *path, const unsigned char *head, int64_t size, tobi_error *err)
+{
+    const int64_t count = read_u32(head + 80), most = (size - STL_HEAD)/STL_ROW;
+    if (memcmp(head, "solid", 5) == 0 || !memchr(head, 0, STL_HEAD)) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "mesh '%s': a binary STL of %lld triangles has %lld bytes, this file "
+                     "has %lld, room for %lld: it is cut off or its count is wrong", path, (long long)count,
+                     (long long)(count*STL_ROW + STL_HEAD), (long long)size, (long long)most);
+}
+
 int tobi_stl_read_binary(const char *path, int64_t size, tobi_mesh *out, tobi_status *status,
                          tobi_error *err)
 {
     unsigned char head[STL_HEAD];
     FILE *f = NULL;
     if (size > STL_HEAD) tobi_plain_open(path, "mesh", 0, &f, NULL, NULL);
-    int mine = f && fread(head, 1, sizeof head, f) == sizeof head &&
-               (int64_t)read_u32(head + 80)*STL_ROW + STL_HEAD == size;
+    const int whole = f && fread(head, 1, sizeof head, f) == sizeof head;
+    const int mine = whole && (int64_t)read_u32(head + 80)*STL_ROW + STL_HEAD == size;
     *status = TOBI_OK;
     if (mine) *status = read_rows(f, path, (size - STL_HEAD)/STL_ROW, out, err);
+    else if (whole) *status = refuse_count(path, head, size, err);
     if (f) fclose(f);
-    return !mine ? 0 : *status == TOBI_OK ? 1 : -1;
+    return *status != TOBI_OK ? -1 : mine;
 }
 
 /* --- PLY ---------------------------------------------------------------------------------- */

@@ -3,8 +3,9 @@
 #include "geom/mesh.h"
 
 /* 1 and fills out when the file is a binary STL of exactly the length that its count of triangles asks
-   for (84 + 50 n bytes): such files are read here, ten times faster than by the importer. 0 otherwise.
-   -1 with status in *status after an error. out holds raw arrays, one vertex per corner, unchecked. */
+   for (84 + 50 n bytes): such files are read here, ten times faster than by the importer. 0 for others.
+   -1 with status in *status after an error, and for a binary one of another length: TOBI_INVALID. out holds
+   raw arrays, one vertex per corner, unchecked. */
 int tobi_stl_read_binary(const char *path, int64_t size, tobi_mesh *out, tobi_status *status,
                          tobi_error *err);
 

@@ -1,4 +1,5 @@
-/* What the importer does not do: it says that an index is wrong but not where, and it knows no .5. */
+/* What the importer does not do: it says that an index is wrong but not where, and it knows neither .5 nor a
+   byte order mark. */
 #define _POSIX_C_SOURCE 200809L
 #include "geom/obj_scan.h"
 #include "base/plain.h"
@@ -23,6 +24,19 @@ static int64_t find_bad_index(char *text, int64_t so_far, int64_t total, int *fo
     return 0;
 }
 
+/* A byte order mark, which editors of Windows put in front, is no part of the first line. */
+static int has_mark(const char *text, size_t size)
+{
+    return size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0;
+}
+
+static void go_to_start(FILE *f)
+{
+    char mark[3];
+    rewind(f);
+    if (!has_mark(mark, fread(mark, 1, sizeof mark, f))) rewind(f);
+}
+
 static int is_vertex(const char *line) { return line[0] == 'v' && (line[1] == ' ' || line[1] == '\t'); }
 static int is_face(const char *line) { return line[0] == 'f' && (line[1] == ' ' || line[1] == '\t'); }
 
@@ -34,8 +48,9 @@ int tobi_obj_scan(const char *path, tobi_obj_fault *fault)
     int found = 0;
     *fault = (tobi_obj_fault){0};
     if (tobi_plain_open(path, "mesh", 0, &f, NULL, NULL) != TOBI_OK) return 0;
+    go_to_start(f);
     while (getline(&line, &room, f) > 0) fault->vertices += is_vertex(line);
-    rewind(f);
+    go_to_start(f);
     for (int64_t so_far = 0; !found && getline(&line, &room, f) > 0;) {
         fault->line++;
         so_far += is_vertex(line);
@@ -58,17 +73,18 @@ static int lacks_zero(const char *text, size_t i, size_t size)
 
 int tobi_obj_add_zeros(const char *path, char **text, size_t *size)
 {
-    size_t length, lacking = 0, at = 0;
+    size_t length, lacking = 0, at = 0, mark;
     char *old;
     *text = NULL;
     if (tobi_plain_read(path, "mesh", 0, &old, &length, NULL) != TOBI_OK) return -1;
     for (size_t i = 0; i < length; i++) lacking += (size_t)lacks_zero(old, i, length);
-    *size = length + lacking;
-    if (lacking) *text = malloc(*size);
-    for (size_t i = 0; *text && i < length; i++) {
+    mark = has_mark(old, length) ? 3 : 0;
+    *size = length + lacking - mark;
+    if (lacking || mark) *text = malloc(*size + 1);
+    for (size_t i = mark; *text && i < length; i++) {
         if (lacks_zero(old, i, length)) (*text)[at++] = '0';
         (*text)[at++] = old[i];
     }
     free(old);
-    return !lacking ? 0 : *text ? 1 : -1;
+    return !lacking && !mark ? 0 : *text ? 1 : -1;
 }

@@ -136,23 +136,25 @@ static const char *const *column_units(const reader *r, column c)
     return c < ANGLE ? plain_units : angle_units;
 }
 
-/* "x [m]" becomes "x"; returns "m]", or NULL if the name brings no unit. */
-static char *split_unit(char *field)
+/* "x [m]" or "x (m)" becomes "x"; returns "m]" or "m)", or NULL if the name brings no unit. */
+static char *split_unit(char *field, char *closing)
 {
-    char *unit = strchr(field, '['), *end = unit;
+    char *unit = strpbrk(field, "[("), *end = unit;
     if (!unit) return NULL;
+    *closing = *unit == '[' ? ']' : ')';
     while (end > field && end[-1] == ' ') end--;
     *end = 0;
     return unit + 1;
 }
 
 /* Another unit than the column's own would be misread, so it is refused. */
-static tobi_status check_unit(const reader *r, char *unit, column c, tobi_error *err)
+static tobi_status check_unit(const reader *r, char *unit, char closing, column c, tobi_error *err)
 {
     const char *const *units = column_units(r, c);
     size_t n = strlen(unit);
-    if (n < 2 || unit[n - 1] != ']')
-        return fail_here(r, err, "no ] after the unit [", tobi_excerpt(unit).text);
+    if (n < 2 || unit[n - 1] != closing)
+        return fail_here(r, err, closing == ']' ? "no ] after the unit [" : "no ) after the unit (",
+                         tobi_excerpt(unit).text);
     unit[n - 1] = 0;
     for (int k = 0; units[k]; k++)
         if (strcmp(unit, units[k]) == 0) return TOBI_OK;
@@ -167,7 +169,7 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
     const char *first = strpbrk(line, r->separators = ",;\t");
     if (first) r->separators = *first == ',' ? "," : *first == ';' ? ";" : "\t";
     for (char *field; (field = next_field(r, &rest)) != NULL;) {
-        char *unit = split_unit(field);
+        char closing = 0, *unit = split_unit(field, &closing);
         if (!*field) return fail_here(r, err, "an empty column name (a comma too many?)", "");
         int found = strcasecmp(field, "t") == 0 ? TIME : COLUMNS;
         for (int c = 0; c < (is_flow(r) ? COLUMNS : SPEED) && found == COLUMNS; c++)
@@ -179,7 +181,7 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
                              : is_gravity(r) ? ", x, y, z (m/s2)"
                              : ", x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, pitch, yaw "
                                "(degrees)");
-        if (unit) TOBI_TRY(check_unit(r, unit, found, err));
+        if (unit) TOBI_TRY(check_unit(r, unit, closing, found, err));
         if (r->given[found]++) return fail_here(r, err, "a column comes twice: ", column_names[found]);
         r->meaning[r->fields++] = found;      /* no more than COLUMNS, since none comes twice */
     }

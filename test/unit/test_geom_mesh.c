@@ -87,6 +87,21 @@ static void reads_numbers_without_leading_zero(void **state)
     tobi_mesh_free(&mesh);
 }
 
+/* Editors of Windows put it in front of the first vertex. */
+static void reads_behind_a_byte_order_mark(void **state)
+{
+    (void)state;
+    tobi_mesh mesh;
+    char text[400];
+    snprintf(text, sizeof text, "\xef\xbb\xbf%sf 1 3 2\nf 1 2 4\nf 2 3 4\nf -2 -4 -1\n", tetra_obj);
+    OK(tobi_mesh_read(write_text("marked.obj", text), &mesh, &err));
+    assert_int_equal(mesh.vertex_count, 4);
+    tobi_mesh_free(&mesh);
+    snprintf(text, sizeof text, "\xef\xbb\xbf%sf 1 3 2\nf 1 2 5\n", tetra_obj);
+    REFUSED(tobi_mesh_read(write_text("marked.obj", text), &mesh, &err), TOBI_INVALID,
+            "marked.obj', line 6: a face uses vertex index 5, out of range; allowed are 1 to 4");
+}
+
 static void reads_ascii_stl_and_ply(void **state)
 {
     (void)state;
@@ -204,7 +219,9 @@ static void refuses_bad_files(void **state)
     REFUSED(tobi_mesh_read("claims.ply", &mesh, &err), TOBI_INVALID, "claims");
 #endif
     write_binary_stl("short.stl", &box, 4000000000u);
-    REFUSED(tobi_mesh_read("short.stl", &mesh, &err), TOBI_INVALID, "short.stl");
+    REFUSED(tobi_mesh_read("short.stl", &mesh, &err), TOBI_INVALID,
+            "short.stl': a binary STL of 4000000000 triangles has 200000000084 bytes, this file has 684, "
+            "room for 12: it is cut off or its count is wrong");
     assert_null(mesh.vertices);
     tobi_mesh_free(&box);
 }
@@ -510,6 +527,7 @@ int main(void)
         cmocka_unit_test(opens_no_other_file),
         cmocka_unit_test(reads_polygons_and_decimal_numbers_as_written),
         cmocka_unit_test(reads_numbers_without_leading_zero),
+        cmocka_unit_test(reads_behind_a_byte_order_mark),
         cmocka_unit_test(reads_ascii_stl_and_ply),
         cmocka_unit_test(reads_binary_stl),
         cmocka_unit_test(reads_where_a_host_has_closed_its_streams),

@@ -115,7 +115,7 @@ static void names_may_bring_their_units(void **state)
                           "0,0,0,1,0,0,0\n2,1,4,1,0,0,0\n", NULL);
     AT(m, 0.5, 0, 0, 0, 0.25, 1, 0);
     tobi_motion_free(m);
-    m = load("t [s]\troll [deg]\tyaw  [degrees]\n0\t90\t0\n", NULL);
+    m = load("t (s)\troll [deg]\tyaw  [degrees]\n0\t90\t0\n", NULL);
     AT(m, 0, 0, 1, 0, 0, 0, 1);
     tobi_motion_free(m);
 }
@@ -198,6 +198,8 @@ static void bad_files_are_named_with_their_line(void **state)
         {"time [ms],x\n0,1\n", "column time is in [ms]; allowed is [s]"},
         {"time,yaw [rad]\n0,1\n", "column yaw is in [rad]; allowed is [degrees]"},
         {"time,x [m\n0,1\n", "rows.csv:1: no ] after the unit [m"},
+        {"time (ms),x\n0,1\n", "column time is in [ms]; allowed is [s]"},
+        {"time (s,x\n0,1\n", "rows.csv:1: no ) after the unit (s"},
         {"time,[m]\n0,1\n", "rows.csv:1: an empty column name"},
         {"time,x\n0,1\n1,-2e30\n", "rows.csv:3: -2e+30 in column x is too large; allowed is up to 1e+30"},
         {"time,x\n0,0\n1e-200,1e25\n1,0\n", "rows.csv:3: from 0 s of the row before to 1e-200 s the body "
