@@ -12,6 +12,8 @@
 static const double GAS = 50, LIGHTEST = 0.01, HEAVIEST = 50;
 /* m/s2: some thirty times the earth's. */
 static const double STRONG = 300;
+/* m/s: faster than any hose. */
+static const double JET = 30;
 /* m, and the share of its height that the liquid falls until the end: more than a first look takes. */
 static const double HIGH = 10, FALLS = 0.1;
 /* Steps until the end that viscosity alone asks for, and their length over that of a fall by a spacing. */
@@ -83,10 +85,24 @@ static tobi_status note_viscosity(tobi_world *w, double g, tobi_error *err)
     return tobi_world_add_notes(w, "fluid", s->fluid[most].name, text, err);
 }
 
+static tobi_status note_jets(tobi_world *w, tobi_error *err)
+{
+    for (int k = 0; k < w->sim.opening_count; k++) {
+        const tobi_opening *o = &w->sim.openings[k];
+        char text[240];
+        if (!(o->speed > JET)) continue;
+        snprintf(text, sizeof text, "lets liquid in at up to %.4g m/s: are lengths in metres, and flow rates "
+                 "in %s?\n", o->speed, w->sim.def.dimension == 2 ? "m2/s" : "m3/s");
+        TOBI_TRY(tobi_world_add_notes(w, "inlet", o->name, text, err));
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_note_units(tobi_world *w, tobi_error *err)
 {
     const double g = vec3_length(w->sim.def.gravity);
     TOBI_TRY(note_gravity(w, g, err));
+    TOBI_TRY(note_jets(w, err));
     if (w->system[0].fluid_count == 0) return TOBI_OK;
     TOBI_TRY(note_gas(w, err));
     TOBI_TRY(note_bodies(w, err));

@@ -82,11 +82,41 @@ static void a_tank_is_not(void **state)
     if (all > 1) fail_msg("%d notes", all);
 }
 
+/* Litres per second. */
+static void a_jet_is_told(void **state)
+{
+    (void)state;
+    tobi_world_def def = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_inlet_def inlet = tobi_default_inlet_def();
+    tobi_world *w;
+    int found = 0;
+    def.method = "isph";
+    def.spacing = 0.05;
+    fluid.name = "water";
+    for (int a = 0; a < 3; a++) def.domain_max[a] = 1, fill.box_max[a] = a < 2 ? 1 : 0.2;
+    inlet.name = "pipe";
+    memcpy(inlet.centre, (double[3]){ 0.5, 0.5, 0.5 }, sizeof inlet.centre);
+    memcpy(inlet.normal, (double[3]){ 0, 0, -1 }, sizeof inlet.normal);
+    inlet.radius = 0.1;
+    inlet.flow_rate = 2;
+    OK(tobi_world_create(&def, NULL, &w, &err));
+    OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
+    OK(tobi_world_add_inlet(w, &inlet, &err));
+    OK(tobi_world_start(w, &err));
+    for (int k = 0; tobi_world_note(w, k); k++)
+        found += strstr(tobi_world_note(w, k), "'pipe': lets liquid in at up to 6") != NULL;
+    assert_int_equal(found, 1);
+    tobi_world_destroy(w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(other_units_are_told),
         cmocka_unit_test(a_tank_is_not),
+        cmocka_unit_test(a_jet_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
