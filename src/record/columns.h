@@ -17,12 +17,12 @@
     H("divergence_iterations_mean", "1", real, mean(s->divergence_iterations, s), \
       "Their mean over the steps since the last output.") \
     H("unconverged_steps", "1", int, s->unconverged, \
-      "Steps since the last output in which a solver stopped short of its tolerance; 0 is right.") \
+      "Steps since the last output in which a solver stopped short of its tolerance; 0 is expected.") \
     H("density_error_mean", "1", real, i->density_error_mean, \
-      "Mean over all fluid of abs(density/rest density - 1); above 0.02 the liquid is none any more.") \
+      "Mean over all fluid of abs(density/rest density - 1); above 0.02 it is wrong.") \
     H("density_error_max", "1", real, i->density_error_max, "Its largest value at a particle.") \
     H("surface_share", "1", real, i->surface_share, \
-      "Share of the fluid's particles at a free surface, 0 to 1; above 0.5 all is spray.") \
+      "Share of the fluid's particles at a free surface, 0 to 1; above 0.5 most is spray.") \
     H("divergence_mean", "1/s", real, i->divergence_mean, \
       "Mean over all fluid of abs(div v) after the velocity solve.") \
     H("divergence_max", "1/s", real, i->divergence_max, "Its largest value at a particle.") \
@@ -31,7 +31,7 @@
     H("pressure_residual", "1", real, i->pressure_residual, \
       "Relative residual of the pressure in the last step; of dfsph in the density solve.") \
     H("pressure_residual_max", "1", real, s->residual_max, \
-      "Its largest value since the last output; of isph, computed afresh from the answer.") \
+      "Its largest value since the last output; of isph, recomputed from the solution.") \
     H("volume_drift", "1", real, i->volume_drift, \
       "Mean error of volume away from a free surface, positive: swollen; of isph, 0 of the others.") \
     H("wall_force_x", "N", real, i->wall_force[0], \
