@@ -77,7 +77,7 @@ typedef struct tobi_output {
     int derived;                         /* 1: the method's `derive` prepares it                        */
 } tobi_output;
 
-/* A particle method: one const struct in one file, listed in world/methods.c. The verbs of a step in their
+/* A particle method: one const struct in one file, listed in world/methods.def. The verbs of a step in their
    order: remember, max_dt, begin, forces, solve, move, finish. None moves bodies or the clock: world/step.c
    does. */
 typedef struct tobi_method {

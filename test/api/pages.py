@@ -18,9 +18,10 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tempfile
 import urllib.parse
 
-ROOT = pathlib.Path(os.environ.get("TOBIUO_SOURCE", pathlib.Path(__file__).parents[2]))
+ROOT = pathlib.Path(os.environ.get("TOBIUO_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 PAGES = ["*.md", "docs/*.md", "docs/*/*.md", "scenes/*.md", "scenes/*/*.md"]
 SCRIPT_PAGES = ["docs/scripts.md", "docs/scripts.ja.md"]
 
@@ -191,7 +192,10 @@ def main():
         return 1 if check_links() else 0
     if what not in checks or len(sys.argv) != 3:
         sys.exit(__doc__)
-    return 1 if checks[what](os.path.abspath(sys.argv[2])) else 0
+    program = os.path.abspath(sys.argv[2])
+    with tempfile.TemporaryDirectory() as folder:       # the checks write and delete scenes/ where they are
+        os.chdir(folder)
+        return 1 if checks[what](program) else 0
 
 
 if __name__ == "__main__":
