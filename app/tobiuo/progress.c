@@ -73,7 +73,7 @@ static void print_line(progress *p, const tobi_world *world, const tobi_step_inf
     const double done = info->time - p->start_time, span = end - p->start_time;
     const double outside = 1 - spent/(now - p->last);
     write_end(done > 0.0 ? (now - p->begun)*(end - info->time)/done : 0.0, left, sizeof left);
-    bool converged = info->density_converged && info->divergence_converged;
+    bool converged = info->density_converged && info->divergence_converged && !info->viscosity_failed;
     if (info->density_iterations + info->divergence_iterations > 0)    /* the method has a solver */
         snprintf(solver, sizeof solver, "  iterations %d+%d%s", info->density_iterations,
                  info->divergence_iterations, converged ? "" : " (not converged)");

@@ -47,7 +47,7 @@ void watch_step(watch *w, const tobi_world *world, const tobi_step_info *info)
 {
     tobi_body_info body;
     if (w->steps++ == 0) w->surface_start = info->surface_share;
-    const int unconverged = !info->density_converged || !info->divergence_converged;
+    const int unconverged = !info->density_converged || !info->divergence_converged || info->viscosity_failed;
     w->unconverged += unconverged;
     if (unconverged && !(info->pressure_residual < w->worst.pressure_residual)) w->worst = *info;
     w->last = *info;

@@ -60,7 +60,7 @@ typedef struct tobi_world_def {
     double      contact_angle;   /* degrees, in the liquid, at the sides of the box                  */
     double      friction;        /* 1, Coulomb coefficient of "separate" sides and solids            */
     double      speed_limit;     /* m/s, a faster particle stops the run as diverged; 0 = automatic  */
-    int         threads;         /* 0 = all cores                                                    */
+    int         implicit_viscosity, threads;   /* 1: viscosity bounds no step; 0 = all cores          */
 } tobi_world_def;
 
 /* Parameters of the DFSPH method. */
@@ -506,8 +506,8 @@ typedef struct tobi_gravity_def {
 typedef struct tobi_step_info {
     int64_t step;                 /* number of this step, first = 1                                   */
     double  time, dt;             /* s, after the step                                                */
-    int     density_iterations, divergence_iterations;
-    int     density_converged, divergence_converged;
+    int     density_iterations, divergence_iterations, viscosity_iterations;
+    int     density_converged, divergence_converged, viscosity_failed;   /* the last: stopped short    */
     double  density_error_mean, density_error_max;   /* 1, |rho/rho0 - 1| compression over all fluid   */
     double  surface_share;        /* 1, share of the fluid's particles that are at a free surface      */
     double  divergence_mean, divergence_max;         /* 1/s over all fluid                             */

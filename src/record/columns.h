@@ -16,6 +16,8 @@
     H("divergence_iterations", "1", int, i->divergence_iterations, "Iterations of the velocity solve.") \
     H("divergence_iterations_mean", "1", real, mean(s->divergence_iterations, s), \
       "Their mean over the steps since the last output.") \
+    H("viscosity_iterations", "1", int, i->viscosity_iterations, \
+      "Iterations of implicit viscosity in the last step; 0 without it.") \
     H("unconverged_steps", "1", int, s->unconverged, \
       "Steps since the last output in which a solver stopped short of its tolerance; 0 is expected.") \
     H("density_error_mean", "1", real, i->density_error_mean, \

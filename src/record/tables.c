@@ -24,7 +24,7 @@ static double wall_ratio(const tobi_run *run, const tobi_step_info *i)
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info)
 {
     tally->steps++;
-    tally->unconverged += !info->density_converged || !info->divergence_converged;
+    tally->unconverged += !info->density_converged || !info->divergence_converged || info->viscosity_failed;
     tally->density_iterations += info->density_iterations;
     tally->divergence_iterations += info->divergence_iterations;
     tally->residual_max = fmax(tally->residual_max, info->pressure_residual);

@@ -228,7 +228,8 @@ static void add_gradients(const void *view, int64_t begin, int64_t end)
 
 void tobi_boundary_add_gradients(tobi_system *s) { visit_entries(s, add_gradients); }
 
-/* Acceleration by hydrostatic pressure of mirrors and friction of one entry, for velocity u. */
+/* Acceleration by hydrostatic pressure of mirrors and friction of one entry, for velocity u; implicit
+   viscosity finds friction later. */
 static void entry_accel(const tobi_system *s, int64_t i, const tobi_boundary_entry *e, const double u[3],
                         double hydrostatic[3], double drag[3])
 {
@@ -238,6 +239,8 @@ static void entry_accel(const tobi_system *s, int64_t i, const tobi_boundary_ent
         hydrostatic[c] = e->hydrostatic[c];
         a[c] = nu*(e->drag_velocity[c] - e->drag*u[c]);
     }
+    memset(drag, 0, 3*sizeof *drag);
+    if (s->sim->def.implicit_viscosity) return;
     double normal = dot(a, e->foot_normal), square = 0;
     for (int c = 0; c < 3; c++) {
         drag[c] = a[c] - normal*e->foot_normal[c];
@@ -266,6 +269,63 @@ static void add_forces(const void *view, int64_t begin, int64_t end)
 }
 
 void tobi_boundary_add_forces(tobi_system *s) { visit_entries(s, add_forces); }
+
+/* Friction of one entry on a particle at velocity w, eq. (3) of viscosity.md, m/s2. moving: 1 the body goes
+   as it does, 0 it stands. */
+static void entry_friction(const tobi_system *s, int64_t i, const tobi_boundary_entry *e, tobi_float4 w,
+                           int moving, double out[3])
+{
+    const tobi_fluid *f = &s->fluid[s->particles.fluid[i]];
+    const double u[3] = {w.x, w.y, w.z};
+    for (int c = 0; c < 3; c++)
+        out[c] = f->viscosity/f->density*((moving ? e->drag_velocity[c] : 0) - e->drag*u[c]);
+    const double normal = dot(out, e->foot_normal);
+    for (int c = 0; c < 3; c++) out[c] -= normal*e->foot_normal[c];
+}
+
+static void add_viscous_rows(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    FOR_NEAR_PARTICLES(s, k, i, e) {
+        const tobi_fluid *liquid = &s->fluid[s->particles.fluid[i]];
+        float *r = &f->viscous_residual[i].x, *inverse = &f->viscous_inverse[i].x;
+        double add[3];
+        entry_friction(s, i, e, f->viscous_velocity[i], 1, add);
+        for (int c = 0; c < 3 && inverse[c] > 0; c++) {
+            const double n = e->foot_normal[c];
+            r[c] += (float)(s->dt*liquid->density*add[c]);
+            inverse[c] = (float)(1/(1/inverse[c] + s->dt*liquid->viscosity*e->drag*(1 - n*n)));
+        }
+    }
+}
+
+static void add_viscous_product(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    FOR_NEAR_PARTICLES(s, k, i, e) {
+        const double scale = s->dt*s->fluid[s->particles.fluid[i]].density;
+        float *product = &f->viscous_product[i].x;
+        double add[3];
+        entry_friction(s, i, e, f->viscous_direction[i], 0, add);
+        for (int c = 0; c < 3 && f->viscous_inverse[i].x > 0; c++) product[c] -= (float)(scale*add[c]);
+    }
+}
+
+static void keep_friction(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    FOR_NEAR_PARTICLES(s, k, i, e) {
+        tobi_boundary_entry *own = (tobi_boundary_entry *)e;
+        if (f->viscous_inverse[i].x > 0) entry_friction(s, i, e, f->viscous_velocity[i], 1, own->friction);
+    }
+}
+
+void tobi_boundary_add_viscous_rows(tobi_system *s) { visit_entries(s, add_viscous_rows); }
+void tobi_boundary_add_viscous_product(tobi_system *s) { visit_entries(s, add_viscous_product); }
+void tobi_boundary_keep_friction(tobi_system *s) { visit_entries(s, keep_friction); }
 
 /* Keeps the place x + way of particle i at least that far from the bodies it sees. */
 static void keep_away(const tobi_system *s, int64_t i, double least, double way[3])

@@ -50,7 +50,7 @@ void tobi_boundary_sum(tobi_system *s, tobi_kernel kernel, const void *view, int
 }
 
 /* The Laplacian knows the traction mu dv/dn. A wall that turns at omega has mu (dv/dn + n x omega): the
-   second part adds no force to a closed surface, but a torque, eq. (17). */
+   second part adds no force to a closed surface, but a torque, eq. (17). Implicit viscosity knows it. */
 static void turning_traction(const tobi_system *s, const tobi_boundary_link *e, double force[3])
 {
     const tobi_body *b = &s->sim->bodies[e->body];
@@ -83,7 +83,7 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
             force[a] = -mass*accel[a];
             arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
         }
-        if (r->viscous) turning_traction(s, l, turning);
+        if (r->viscous && !s->sim->def.implicit_viscosity) turning_traction(s, l, turning);
         float capillary = f->capillary ? f->capillary[l->particle] : 0;
         float pressure = r->known ? 0 : f->pressure[l->particle];
         double push = r->viscous ? 0 : 2*s->smoothing.volume*(pressure - capillary);

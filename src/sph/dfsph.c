@@ -17,6 +17,7 @@
 #include "sph/stages.h"
 #include "sph/reference.h"
 #include "sph/undo.h"
+#include "sph/viscosity.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -135,7 +136,7 @@ static double choose_dt(tobi_system *s)
     if (s->sim->def.time_step > 0) {
         dt = s->sim->def.time_step;
     } else {
-        dt = fmin(m->motion_dt, fmin(fmin(sph_viscous_dt(s), sph_tension_dt(s)), tobi_couple_dt(s)));
+        dt = fmin(m->motion_dt, fmin(sph_force_dt(s), tobi_couple_dt(s)));
         if (s->sim->def.time_step_max > 0) dt = fmin(dt, s->sim->def.time_step_max);
         if (m->memory.dt > 0) dt = fmin(dt, 1.1*m->memory.dt);
         else {      /* liquid beside solids sets off at once, and that before a body through narrow places */
@@ -299,6 +300,8 @@ static void apply_forces(tobi_system *s, dfsph *m, double *clock)
     if (m->view.exact) share = fmax(share - viscous_share(s, m, dt), 0);
     m->view.filter = (float)(share/(dt*scale*scale));
     sph_apply_forces(s, &m->view, m->kernel, clock);
+    sph_viscosity_solve(s, &m->view, m->kernel, NULL);
+    tobi_stage_end(&s->sim->stages, "viscosity", clock);
 }
 
 /* A surface particle has pressure 0 about a spacing outside, over its share of the surface. */

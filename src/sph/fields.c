@@ -19,6 +19,7 @@ unsigned sph_needs(const tobi_system *s, int full)
         if (s->fluid[f].tension > 0) needs |= SPH_NEED_TENSION;
     if (tobi_system_is_mixed(s)) needs |= SPH_NEED_PHASES;
     if (s->sim->opening_count > 0) needs |= SPH_NEED_OPENINGS;
+    if (s->sim->def.implicit_viscosity) needs |= SPH_NEED_IMPLICIT;
     return needs;
 }
 

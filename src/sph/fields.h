@@ -2,13 +2,15 @@
 #pragma once
 #include "core/particles.h"
 
-/* Scenes with surface tension; liquids with bodies in them; inlets and outlets; several liquids. */
-enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2, SPH_NEED_OPENINGS = 4, SPH_NEED_PHASES = 8 };
+/* Scenes with surface tension; liquids with bodies in them; inlets and outlets; several liquids;
+   implicit viscosity. */
+enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2, SPH_NEED_OPENINGS = 4, SPH_NEED_PHASES = 8,
+       SPH_NEED_IMPLICIT = 16 };
 
 /* Stages of a step: boundaries; density; forces; the pressure by an equation, or by that of state; the
    correction of positions; forces on walls and bodies, new positions. Between steps: a derived output. */
 enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 16, SPH_MOVE = 32,
-       SPH_DERIVE = 64, SPH_BOUNDARIES = 128,
+       SPH_DERIVE = 64, SPH_BOUNDARIES = 128, SPH_VISCOUS = SPH_FORCES | SPH_DERIVE,
        SPH_AFTER_SEEING = SPH_FORCES | SPH_SOLVE | SPH_TAIT | SPH_CORRECT | SPH_MOVE | SPH_DERIVE };
 
 #define SPH_FIELDS(X) \
@@ -47,6 +49,18 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
       "kg/m3, Pa s, m, 1: density, viscosity, distance from the interface, fluid") \
     X(tobi_float4, TOBI_F32, 4, interface,    TOBI_SCRATCH, SPH_NEED_PHASES, "1", \
       "normal of the interface, out of the fluid; w = curvature, 1/m") \
+    X(tobi_float4, TOBI_F32, 4, viscous_velocity, SPH_VISCOUS, SPH_NEED_IMPLICIT, "m/s", \
+      "that viscosity leaves, while it is solved for") \
+    X(tobi_float4, TOBI_F32, 4, viscous_expected, SPH_VISCOUS, SPH_NEED_IMPLICIT, "m/s", \
+      "what gravity and pressure are expected to add") \
+    X(tobi_float4, TOBI_F32, 4, viscous_residual, SPH_VISCOUS, SPH_NEED_IMPLICIT, "kg/m2/s", \
+      "of its equation") \
+    X(tobi_float4, TOBI_F32, 4, viscous_direction, SPH_VISCOUS, SPH_NEED_IMPLICIT, "m/s", \
+      "of the search") \
+    X(tobi_float4, TOBI_F32, 4, viscous_product, SPH_VISCOUS, SPH_NEED_IMPLICIT, "kg/m2/s", \
+      "A q") \
+    X(tobi_float4, TOBI_F32, 4, viscous_inverse, SPH_VISCOUS, SPH_NEED_IMPLICIT, "m3/kg", \
+      "of the diagonal") \
     X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "at a free surface 1; sparse: 2") \
     X(tobi_float4, TOBI_F32, 4, held,         TOBI_SCRATCH, SPH_NEED_OPENINGS, "m/s", \
       "velocity in a buffer; w: 1 + number of an inlet, < 0 of an outlet, 0: none") \

@@ -12,6 +12,7 @@
 #include "sph/sph.k.h"
 #include "sph/tait.k.h"
 #include "sph/tension.k.h"
+#include "sph/viscosity.k.h"
 
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)

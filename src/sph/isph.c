@@ -13,6 +13,7 @@
 #include "sph/openings.h"
 #include "sph/phases.h"
 #include "sph/probe.h"
+#include "sph/viscosity.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -90,7 +91,7 @@ double isph_choose_dt(tobi_system *s)
     const double speed = fmax(m->memory.speed + body, s->sim->body_speed);
     m->motion_dt = fmin(s->sim->def.cfl*s->smoothing.spacing/fmax(speed, 1e-12), sph_gravity_dt(s));
     const double dt = fmin(fmin(m->motion_dt, choose_soft_dt(s)),
-                           fmin(fmin(sph_viscous_dt(s), sph_tension_dt(s)), tobi_couple_dt(s)));
+                           fmin(sph_force_dt(s), tobi_couple_dt(s)));
     return fixed > 0 ? fixed : most > 0 ? fmin(dt, most) : dt;
 }
 
@@ -214,6 +215,15 @@ tobi_status isph_begin(tobi_system *s, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Gravity and the pressure of the last step: implicit viscosity acts on what is left of both. */
+static void expect(tobi_system *s)
+{
+    isph *m = s->state;
+    launch(s, m, m->kernel->isph_gravity, NULL);
+    sph_show_pressure(s);
+    launch(s, m, m->kernel->isph_projection, NULL);
+}
+
 /* Viscosity, friction and tension are those of the other SPH methods, with gravity, and what walls make of
    it, left out: the images of the pressure equation know that. */
 void isph_forces(tobi_system *s)
@@ -229,6 +239,7 @@ void isph_forces(tobi_system *s)
     sph_apply_forces(s, &without, m->kernel, &clock);
     if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     isph_bodies_remove_hydrostatic(s);
+    sph_viscosity_solve(s, &without, m->kernel, expect);
     launch(s, m, m->kernel->isph_gravity, NULL);
     sph_openings_hold(s);
 }
@@ -281,6 +292,7 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
     without.acceleration.acts = 0;
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
     memcpy(s->info.wall_force, friction, sizeof s->info.wall_force);
+    sph_viscosity_load(s);
     m->sides_due = 1;
     tobi_boundary_load(s);
     isph_forces_load(&m->solver, s);

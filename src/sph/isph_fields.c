@@ -5,6 +5,7 @@
 #include "sph/boundary.h"
 #include "sph/fields.h"
 #include "sph/isph_bodies.h"
+#include "sph/viscosity.h"
 #include <math.h>
 #include <string.h>
 
@@ -43,12 +44,14 @@ static void add_viscosity(tobi_system *s, isph_solver *m, const sph_view *shared
     v.acceleration.acts = 0;
     s->dt = m->view.dt = dt;
     if (corrected) launch(s, m, m->kernel->isph_viscosity);
+    sph_viscosity_begin(s, &v, m->kernel);
     tobi_launch(&s->sim->exec, m->kernel->sph_laplacian, &v, 0, s->particles.count, NULL);
     tobi_launch(&s->sim->exec, m->kernel->sph_kick, &v, 0, s->particles.count, NULL);
     if (s->sim->body_count > 0) {
         tobi_boundary_add_forces(s);
         isph_bodies_remove_hydrostatic(s);
     }
+    sph_viscosity_add(s, &v, m->kernel);
     if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity);
     s->dt = m->view.dt = step;
 }

@@ -49,6 +49,11 @@ int sph_phases_differ(const tobi_system *s)
     return 0;
 }
 
+void sph_phases_set(tobi_system *s, sph_view *v, const sph_kernels *k)
+{
+    launch(s, v, k->sph_phase_set);
+}
+
 void sph_phases_rub(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
     if (!v->phase || !sph_phases_differ(s)) return;

@@ -9,6 +9,8 @@ void sph_phases_bind(const tobi_system *s, sph_view *v);
 /* Constants, distance from the interface and, where it has tension, normal and curvature of all particles;
    the payload of the records and accel are gone. After the view is bound, before forces act. */
 void sph_phases_find(tobi_system *s, sph_view *v, const sph_kernels *k);
+/* The constants of each particle's fluid, into `phase`. */
+void sph_phases_set(tobi_system *s, sph_view *v, const sph_kernels *k);
 /* What the viscosity of pairs of different fluids gives beyond that of i, into `interface`; and v += that. */
 void sph_phases_rub(tobi_system *s, sph_view *v, const sph_kernels *k);
 void sph_phases_kick(tobi_system *s, sph_view *v, const sph_kernels *k);

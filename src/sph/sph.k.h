@@ -248,6 +248,7 @@ TOBI_FN float sph_plane_friction(const sph_view *v, int plane, float s, float si
 {
     const tobi_plane *p = &v->plane[plane];
     float along2 = 0;
+    if (v->implicit) return 0;
     for (int c = 0; c < 3; c++) {
         const float u = c == p->axis ? 0 : speed[c] - p->velocity[c];
         along2 += u*u;
@@ -272,7 +273,7 @@ TOBI_FN void sph_kick_pair(const sph_view *v, int64_t i, const tobi_neighbors *n
 }
 TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a, double *totals)
 {
-    float nu = v->kinematic[v->fluid[i]], k = -v->filter*v->slope;
+    float nu = v->implicit ? 0 : v->kinematic[v->fluid[i]], k = -v->filter*v->slope;
     tobi_float4 u = v->velocity[i], l = v->accel[i];
     float speed[3] = {u.x, u.y, u.z}, wet = sph_wetness(v, i);
     float g[3];

@@ -5,6 +5,7 @@
 #include "sph/boundary.h"
 #include "sph/openings.h"
 #include "sph/phases.h"
+#include "sph/viscosity.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <string.h>
@@ -57,6 +58,8 @@ static void bind_stage(sph_view *v, const sph_fields *f)
     v->precondition = f->precondition; v->residual = f->residual; v->product = f->product;
     v->delta = f->delta;
     v->moment = f->moment; v->target_divergence = f->target_divergence;
+    v->viscous = (sph_viscous_rows){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
+                                    f->viscous_direction, f->viscous_product, f->viscous_inverse, NULL};
 }
 
 void sph_stage(tobi_system *s, sph_view *v, int stage)
@@ -75,6 +78,8 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     v->stretch = f->stretch; v->shear = f->shear; v->near_body = f->near_body;
     v->wall = f->wall; v->normal = f->normal; v->capillary = f->capillary;
     v->density = f->density;
+    v->implicit = s->sim->def.implicit_viscosity;
+    v->dynamic = (float)s->fluid[0].viscosity;
     v->diagonal = f->diagonal;
     v->surface = f->surface;
     v->full = vessel == SPH_VESSEL_FULL;
@@ -139,6 +144,11 @@ double sph_tension_dt(const tobi_system *s)
         if (s->fluid[f].tension > 0)
             dt = fmin(dt, 0.4*sqrt(s->fluid[f].density*d*d*d/(2*acos(-1)*s->fluid[f].tension)));
     return fmin(dt, sph_phases_dt(s));
+}
+
+double sph_force_dt(const tobi_system *s)
+{
+    return fmin(s->sim->def.implicit_viscosity ? INFINITY : sph_viscous_dt(s), sph_tension_dt(s));
 }
 
 void sph_use_dt(const tobi_system *s, sph_view *v)
@@ -296,10 +306,10 @@ static void apply_filter(tobi_system *s, sph_view *v, const sph_kernels *k)
 /* All but the filter of full vessels. */
 static void kick(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
-    sph_phases_rub(s, v, k);
+    if (!v->implicit) sph_phases_rub(s, v, k);
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
-    sph_phases_kick(s, v, k);
+    if (!v->implicit) sph_phases_kick(s, v, k);
     if (s->sim->body_count > 0) tobi_boundary_add_forces(s);
     sph_soft_add_forces(s);
     apply_tension(s, v, k);
@@ -311,6 +321,7 @@ void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double 
 {
     sph_stage(s, v, SPH_FORCES);
     if (v->exact) launch(s, v, k->sph_target_divergence, NULL);
+    sph_viscosity_begin(s, v, k);
     if (v->exact) apply_filter(s, v, k);
     kick(s, v, k);
     sph_openings_hold(s);
@@ -322,6 +333,7 @@ void sph_measure_forces(tobi_system *s, sph_view *v, const sph_kernels *k, doubl
     double t[TOBI_TOTALS];
     launch(s, v, k->sph_wall_force, t);
     memcpy(s->info.wall_force, t, sizeof s->info.wall_force);
+    sph_viscosity_load(s);
     sph_of(s)->reference_volume = t[3]*s->smoothing.volume;
     if (s->sim->body_count > 0) tobi_boundary_load(s);
     sph_soft_load(s);
@@ -362,6 +374,18 @@ void sph_finish(tobi_system *s)
     tobi_stage_end(&s->sim->stages, "motion", &clock);
 }
 
+static void show_pressure(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const float *p = sph_fields_of(&s->particles)->pressure;
+    for (int64_t i = begin; i < end; i++) s->cells.record[i].w = p[i];
+}
+
+void sph_show_pressure(tobi_system *s)
+{
+    tobi_loop(s->sim->exec.threads, s->particles.count, 0, show_pressure, s);
+}
+
 /* The kick over one second, then taken back, and the pressure. */
 static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
@@ -373,7 +397,9 @@ static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *
     memcpy(f->saved_velocity, p->velocity, (size_t)p->count*sizeof *f->saved_velocity);
     s->dt = v->dt = 1;
     v->filter = 0;
+    sph_viscosity_begin(s, v, k);
     kick(s, v, k);
+    sph_viscosity_add(s, v, k);
     s->dt = step;
     v->dt = dt;
     for (int64_t i = 0; i < p->count; i++) {

@@ -16,6 +16,8 @@ double sph_gravity_dt(const tobi_system *s);
 double sph_viscous_dt(const tobi_system *s);
 /* 0.4 sqrt(rho d^3/(2 pi sigma)): the longest step of explicit surface tension, s; without it INFINITY. */
 double sph_tension_dt(const tobi_system *s);
+/* The least of those two; implicit viscosity sets no bound. */
+double sph_force_dt(const tobi_system *s);
 /* The step at hand, s->dt, into v. */
 void sph_use_dt(const tobi_system *s, sph_view *v);
 
@@ -38,7 +40,10 @@ void sph_set_body_velocities(tobi_system *s, double *clock);
    explain: their speed, that of the liquid that they push, and their acceleration across the domain. The
    pressure of a sudden change grows as 1/dt. */
 double sph_explained_head(const tobi_system *s);
-/* v += dt (surface tension, gravity, viscosity, filter, friction, lift); v->filter is set. */
+/* The pressure of the last solve for neighbours to read. */
+void sph_show_pressure(tobi_system *s);
+/* v += dt (surface tension, gravity, viscosity, filter, friction, lift); v->filter is set. Viscosity and
+   friction wait where they are implicit. */
 void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock);
 /* Forces on walls and bodies by particles.pressure and the friction of this step. */
 void sph_measure_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock);

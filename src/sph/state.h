@@ -14,6 +14,7 @@ typedef struct sph_state {
     double open;                    /* particles at a surface beyond doubt, in full vessels as well     */
     double lowest;                  /* m, depth of the lowest particle at a free surface                */
     double middle;                  /* m, median depth of the free surface, of the step at hand         */
+    double friction[3];             /* N, of implicit viscosity on the sides of the domain              */
     int marked;                     /* 1: the `held` of particles is that of the present rows       */
     tobi_float4 normal[TOBI_OPENING_LIMIT];      /* of openings                                     */
     int mirrors;                    /* 1: walls are mirrors (isph), 0: integrals of the kernel          */

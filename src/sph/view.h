@@ -14,6 +14,13 @@ typedef struct tobi_plane { int axis; float sign; double at; int no_slip; float 
 /* Of sph_view.surface: neighbours are missing on all sides alike, as in spray. */
 enum { SPH_SPARSE = 2 };
 
+/* Of implicit viscosity, viscosity.k.h; NULL without it. */
+typedef struct sph_viscous_rows {
+    tobi_float4 *TOBI_RESTRICT x, *TOBI_RESTRICT expected, *TOBI_RESTRICT residual, *TOBI_RESTRICT direction,
+                *TOBI_RESTRICT product, *TOBI_RESTRICT inverse;
+    const tobi_float4 *of;           /* x or direction: what the sums are over     */
+} sph_viscous_rows;
+
 typedef struct sph_view {
     int64_t count;
     /* particle arrays, see core/particles.h */
@@ -31,6 +38,7 @@ typedef struct sph_view {
     float *TOBI_RESTRICT precondition, *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
     float *TOBI_RESTRICT target_divergence;   /* it and moment: with `exact`                          */
     tobi_float4 *TOBI_RESTRICT moment;
+    sph_viscous_rows viscous;
     tobi_float4 *TOBI_RESTRICT phase, *TOBI_RESTRICT interface;   /* NULL with one fluid, phases.k.h */
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
     float *TOBI_RESTRICT pressure;            /* of the solve at hand; NULL for walls: none */
@@ -58,6 +66,8 @@ typedef struct sph_view {
     /* fluids, by index */
     float inverse_density[TOBI_MAX_FLUIDS];   /* m3/kg   */
     float kinematic[TOBI_MAX_FLUIDS];         /* m2/s    */
+    float dynamic;                            /* Pa s, of the first */
+    int   implicit;                           /* 1: viscosity and friction wait for viscosity.k.h */
     float tension[TOBI_MAX_FLUIDS];           /* N/m     */
     float interface_tension[TOBI_MAX_FLUIDS][TOBI_MAX_FLUIDS];    /* N/m, symmetric, 0 on the diagonal */
     int fluid_count;

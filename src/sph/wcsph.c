@@ -11,6 +11,7 @@
 #include "sph/openings.h"
 #include "sph/stages.h"
 #include "sph/reference.h"
+#include "sph/viscosity.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -104,7 +105,7 @@ static double choose_dt(tobi_system *s)
     const wcsph *m = s->state;
     double speed = fmax(m->memory.speed, s->sim->body_speed);
     if (s->sim->def.time_step > 0) return s->sim->def.time_step;
-    double dt = fmin(limit_dt(s, TOBI_LIQUIDS, speed), fmin(sph_viscous_dt(s), sph_tension_dt(s)));
+    double dt = fmin(limit_dt(s, TOBI_LIQUIDS, speed), sph_force_dt(s));
     dt = fmin(dt, fmin(body_dt(s, m), tobi_couple_dt(s)));
     return s->sim->def.time_step_max > 0 ? fmin(dt, s->sim->def.time_step_max) : dt;
 }
@@ -155,6 +156,7 @@ static void apply_forces(tobi_system *s, wcsph *m, double *clock)
     double scale = 2*s->smoothing.rate, motion = 10*s->sim->def.cfl*s->smoothing.spacing/m->sound;
     m->view.filter = (float)(m->def.filter/(fmax(s->dt, motion)*scale*scale));
     sph_apply_forces(s, &m->view, m->kernel, clock);
+    sph_viscosity_solve(s, &m->view, m->kernel, NULL);
 }
 
 /* The equation of state, and its force. */

@@ -69,6 +69,9 @@ static const tobi_param world_rows[] = {
       .text = "automatic",
       .doc = "A particle faster than this stops the run as diverged. Automatic goes by what fall, bodies, "
              "inlets and pressures of outlets explain, and slows single particles beyond it." },
+    { .key = "implicit_viscosity", BOOL, AT(tobi_world_def, implicit_viscosity),
+      .doc = "Whether the viscosity of liquids is solved for, so that it sets no bound on the time step: for "
+             "honey, mud and lava. A free surface then feels no stress, as it should." },
     { .key = "threads", INT, AT(tobi_world_def, threads), RANGE(0, 4096), .unit = "1",
       .text = "all", .doc = "Processor cores to use, all: as OMP_NUM_THREADS says, or else those of the "
              "machine; the result is the same for any number." },

@@ -91,9 +91,14 @@ static void check_iterations(const tobi_rules *r, const char *solve, int least, 
     tell(r, &why, "dfsph.%s_iterations_min", solve);
 }
 
-static void check_isph(const tobi_rules *r, const tobi_isph_def *m)
+static void check_isph(const tobi_rules *r, const tobi_world_def *d, const tobi_isph_def *m)
 {
     tobi_error why = { 0 };
+    if (d->implicit_viscosity && m->viscosity_form != TOBI_VISCOSITY_PLAIN) {
+        tobi_fail(&why, TOBI_INVALID, "is a form of explicit viscosity, and implicit_viscosity is true; "
+                  "allowed with it is plain");
+        tell(r, &why, "isph.viscosity_form");
+    }
     if (m->laplacian == TOBI_LAPLACIAN_OWN && m->solver == TOBI_CG) {
         tobi_fail(&why, TOBI_INVALID, "is own, which makes the matrix unsymmetric, and isph.solver is cg, "
                   "which needs a symmetric one; allowed are bicgstab and gmres");
@@ -142,7 +147,7 @@ void tobi_rules_world(const tobi_rules *r, const tobi_world_def *d, const void *
         check_iterations(r, "density", m->density_iterations_min, m->density_iterations_max);
         check_iterations(r, "divergence", m->divergence_iterations_min, m->divergence_iterations_max);
     }
-    if (method && method_def && strcmp(method->name, "isph") == 0) check_isph(r, method_def);
+    if (method && method_def && strcmp(method->name, "isph") == 0) check_isph(r, d, method_def);
     for (int a = 0; a < d->dimension; a++) {
         check_walls(r, d, method, a);
         check_corners(r, d, a);

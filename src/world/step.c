@@ -186,6 +186,7 @@ static void add_info(tobi_step_info *sum, const tobi_step_info *one)
     const double share = (double)one->fluid_particles/fmax(all, 1);
     sum->density_converged &= one->density_converged;
     sum->divergence_converged &= one->divergence_converged;
+    sum->viscosity_failed |= one->viscosity_failed;
     sum->surface_share += share*(one->surface_share - sum->surface_share);
     sum->speed_max = fmax(sum->speed_max, one->speed_max);
     for (int a = 0; a < 3; a++) {

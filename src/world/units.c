@@ -74,13 +74,15 @@ static tobi_status note_viscosity(tobi_world *w, double g, tobi_error *err)
     const double step = sph_viscous_dt(s), fall = 0.25*sqrt(s->smoothing.spacing/fmax(g, 1e-12));
     int most = 0;
     char text[240];
+    if (w->sim.def.implicit_viscosity) return TOBI_OK;
     if (!(w->sim.def.end_time/step > MANY && step < SHORT*fall) || w->sim.def.time_step > 0) return TOBI_OK;
     for (int f = 1; f < s->fluid_count; f++) {
         const tobi_fluid *a = &s->fluid[f], *b = &s->fluid[most];
         if (a->viscosity/a->density > b->viscosity/b->density) most = f;
     }
     snprintf(text, sizeof text, "its viscosity, %.4g Pa s, allows steps of %.2g s, %.0f of them until %g s; "
-             "water has 0.001 Pa s, honey 10\n", s->fluid[most].viscosity, step, w->sim.def.end_time/step,
+             "water has 0.001 Pa s, honey 10; implicit_viscosity has no such bound\n",
+             s->fluid[most].viscosity, step, w->sim.def.end_time/step,
              w->sim.def.end_time);
     return tobi_world_add_notes(w, "fluid", s->fluid[most].name, text, err);
 }

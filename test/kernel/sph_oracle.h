@@ -11,7 +11,10 @@
 enum {
     POS, PAYLOAD = POS + 3, VEL, ACC = VEL + 3, BAND = ACC + 3, NORMAL, NORMAL_BAND = NORMAL + 3, WALL,
     FLUX = WALL + 3, CAPILLARY, RHO, DIAG, PRE, RES, PROD, DELTA, PRES, SURF, WET,
-    TENSOR, WALLED = TENSOR + 6, MOMENT, MEAN = MOMENT + 3, DROP, MIDWAY, DAMPED, COLUMNS
+    TENSOR, WALLED = TENSOR + 6, MOMENT, MEAN = MOMENT + 3, DROP, MIDWAY, DAMPED,
+    VISCOUS, VISCOUS_EXPECTED = VISCOUS + 3, VISCOUS_RESIDUAL = VISCOUS_EXPECTED + 3,
+    VISCOUS_DIRECTION = VISCOUS_RESIDUAL + 3, VISCOUS_PRODUCT = VISCOUS_DIRECTION + 3,
+    VISCOUS_INVERSE = VISCOUS_PRODUCT + 3, COLUMNS = VISCOUS_INVERSE + 3
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
@@ -19,7 +22,10 @@ static const char *const column_name[COLUMNS] = {
     "normal band", "Gx", "Gy", "Gz", "flux", "capillary", "density", "diagonal", "precondition",
     "residual", "product", "delta", "pressure", "surface", "wetness",
     "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx", "walled",
-    "cx", "cy", "cz", "mean pressure", "drop", "target_divergence", "damped"
+    "cx", "cy", "cz", "mean pressure", "drop", "target_divergence", "damped",
+    "viscous x", "viscous y", "viscous z", "expected x", "expected y", "expected z",
+    "viscous rx", "viscous ry", "viscous rz", "viscous qx", "viscous qy", "viscous qz",
+    "viscous Aqx", "viscous Aqy", "viscous Aqz", "viscous Mx", "viscous My", "viscous Mz"
 };
 
 enum { TABLE = 4000 };

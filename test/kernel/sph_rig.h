@@ -49,6 +49,11 @@ static void rig_fill(rig *g, const rig_case *k, const int n[3])
                 for (int a = 0; a < k->dimension; a++) (&g->p.velocity[i].x)[a] = (float)rig_random();
                 sph_fields_of(&g->p)->wetness[i] = (float)(0.5 + 0.5*rig_random());
                 sph_fields_of(&g->p)->pressure[i] = (float)(1000*rig_random() + 500);
+                for (int a = 0; a < k->dimension; a++) {
+                    (&sph_fields_of(&g->p)->viscous_velocity[i].x)[a] = (float)rig_random();
+                    (&sph_fields_of(&g->p)->viscous_expected[i].x)[a] = (float)rig_random();
+                    (&sph_fields_of(&g->p)->viscous_direction[i].x)[a] = (float)rig_random();
+                }
                 g->p.id[i] = i;
                 g->p.fluid[i] = (uint8_t)(k->fluids > 1 && x%3 == 0);
             }
@@ -101,6 +106,15 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->normal = f->normal; v->capillary = f->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
     v->band_depth = (float)(0.6*g->c.spacing);
+}
+
+static void rig_bind_viscosity(rig *g, double mu)
+{
+    const sph_fields *f = sph_fields_of(&g->p);
+    g->view.dynamic = (float)mu;
+    g->view.viscous = (sph_viscous_rows){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
+                                         f->viscous_direction, f->viscous_product, f->viscous_inverse,
+                                         f->viscous_velocity};
 }
 
 /* Still water that begins under the first layers and has sunk by a spacing since. */
@@ -203,7 +217,7 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     }
     tobi_box_init(&g->box, k->dimension, lower, upper, k->periodic, g->c.h);
     int64_t count = (int64_t)n[0]*n[1]*n[2];
-    const unsigned all = SPH_NEED_TENSION | SPH_NEED_WETTED | SPH_NEED_PHASES;
+    const unsigned all = SPH_NEED_TENSION | SPH_NEED_WETTED | SPH_NEED_PHASES | SPH_NEED_IMPLICIT;
     list.count = sph_field_list.count;
     for (int f = 0; f < list.count; f++) {
         field[f] = sph_field_list.field[f];
@@ -217,6 +231,7 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     if (tobi_cells_list(&g->cells, &g->box, g->c.h, &g->p, &g->exec, err)) return 1;
     if (k->along == 2) rig_hide_walls(g);
     rig_bind(g, k, rho, nu);
+    rig_bind_viscosity(g, nu[0]*rho[0]);
     rig_bind_oracle(g, k, rho, nu);
     rig_bind_still(g, k);
     rig_bind_grid(g, k);
@@ -240,6 +255,12 @@ static void rig_get(const rig *g, row *s)
             s[i][POS + a] = (&p->position[i].x)[a];
             s[i][VEL + a] = (&p->velocity[i].x)[a];
             s[i][ACC + a] = (&f->accel[i].x)[a];
+            s[i][VISCOUS + a] = (&f->viscous_velocity[i].x)[a];
+            s[i][VISCOUS_EXPECTED + a] = (&f->viscous_expected[i].x)[a];
+            s[i][VISCOUS_RESIDUAL + a] = (&f->viscous_residual[i].x)[a];
+            s[i][VISCOUS_DIRECTION + a] = (&f->viscous_direction[i].x)[a];
+            s[i][VISCOUS_PRODUCT + a] = (&f->viscous_product[i].x)[a];
+            s[i][VISCOUS_INVERSE + a] = (&f->viscous_inverse[i].x)[a];
         }
         for (int a = 0; a < 4; a++) s[i][WALL + a] = (&f->wall[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][NORMAL + a] = (&f->normal[i].x)[a];
@@ -265,6 +286,12 @@ static void rig_set(rig *g, const row *s)
             (&p->position[i].x)[a] = s[i][POS + a];
             (&p->velocity[i].x)[a] = (float)s[i][VEL + a];
             (&f->accel[i].x)[a] = (float)s[i][ACC + a];
+            (&f->viscous_velocity[i].x)[a] = (float)s[i][VISCOUS + a];
+            (&f->viscous_expected[i].x)[a] = (float)s[i][VISCOUS_EXPECTED + a];
+            (&f->viscous_residual[i].x)[a] = (float)s[i][VISCOUS_RESIDUAL + a];
+            (&f->viscous_direction[i].x)[a] = (float)s[i][VISCOUS_DIRECTION + a];
+            (&f->viscous_product[i].x)[a] = (float)s[i][VISCOUS_PRODUCT + a];
+            (&f->viscous_inverse[i].x)[a] = (float)s[i][VISCOUS_INVERSE + a];
         }
         f->wetness[i] = (float)s[i][WET]; f->mean[i] = (float)s[i][MEAN];
         f->surface_depth[i] = (float)s[i][DROP];

@@ -4,6 +4,7 @@
 #include "sph/kernels.h"
 #include "sph/state.h"
 #include "kernel/sph_rig.h"
+#include "kernel/sph_viscosity_oracle.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -52,6 +53,15 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_smooth_normal oracle_smooth_normal
 #define oracle_sph_curvature oracle_curvature
 #define oracle_sph_tension oracle_tension
+#define oracle_sph_viscous_spin oracle_viscous_spin
+#define oracle_sph_viscous_rows oracle_viscous_rows
+#define oracle_sph_viscous_product oracle_viscous_product
+#define oracle_sph_viscous_expect oracle_viscous_expect
+#define oracle_sph_viscous_measure oracle_viscous_measure
+#define oracle_sph_viscous_turn oracle_viscous_turn
+#define oracle_sph_viscous_curve oracle_viscous_curve
+#define oracle_sph_viscous_advance oracle_viscous_advance
+#define oracle_sph_viscous_finish oracle_viscous_finish
 static const entry kernels[] = {
 #define PAIR(K, SUMS, MAXIMA, DOC) {#K, offsetof(sph_kernels, K), oracle_of(K)},
 #define FOR PAIR

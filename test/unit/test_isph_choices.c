@@ -113,13 +113,17 @@ static void every_choice_runs_and_matters(void **state)
     }
 }
 
-static void expect_refused(const tobi_isph_def *m, const char *text)
+static void expect_refused_with(tobi_world_def w, const tobi_isph_def *m, const char *text)
 {
     tobi_world *world = NULL;
     tobi_error why;
-    tobi_world_def w = make_def();
     assert_int_equal(tobi_world_create(&w, m, &world, &why), TOBI_INVALID);
     if (!strstr(why.text, text)) fail_msg("%s", why.text);
+}
+
+static void expect_refused(const tobi_isph_def *m, const char *text)
+{
+    expect_refused_with(make_def(), m, text);
 }
 
 static void contradictions_are_refused(void **state)
@@ -135,6 +139,11 @@ static void contradictions_are_refused(void **state)
     m = tobi_default_isph_def();
     m.pressure_gradient = TOBI_SYMMETRIC_SUM;
     expect_refused(&m, "isph.renormalised undoes that");
+    tobi_world_def w = make_def();
+    w.implicit_viscosity = 1;
+    m = tobi_default_isph_def();
+    m.viscosity_form = TOBI_VISCOSITY_FULL;
+    expect_refused_with(w, &m, "a form of explicit viscosity");
 }
 
 /* A tank at rest: pressure holds gravity, nothing else acts, the surface is at the top. To ask changes

@@ -1,0 +1,145 @@
+/* Implicit viscosity (decision 107): conjugate gradients over the velocities, with the diagonal as
+   preconditioner. Drawback: iterations grow as the root of the step over that of explicit viscosity. */
+#include "sph/viscosity.h"
+#include "linear/solve.h"
+#include "sph/boundary.h"
+#include "sph/phases.h"
+#include "sph/stages.h"
+#include "sph/state.h"
+#include <math.h>
+#include <string.h>
+
+/* Of the residual over rho: of the first, but no less of the velocity than LEAST, and no more than MOST. */
+static const double TOLERANCE = 1e-2, LEAST = 1e-6, MOST = 1e-4;
+enum { ITERATIONS = 1000 };
+
+typedef struct solve {
+    tobi_system *s;
+    sph_view *v;
+    const sph_kernels *k;
+    double rz, residual, goal;       /* residual: squares */
+    int iterations;
+} solve;
+
+static void launch(const solve *q, tobi_kernel k, double *totals)
+{
+    tobi_launch(&q->s->sim->exec, k, q->v, 0, q->s->particles.count, totals);
+}
+
+static int ends(void *user)
+{
+    const solve *q = user;
+    return q->residual <= q->goal || q->iterations >= ITERATIONS;
+}
+
+static double precondition(void *user) { return ((const solve *)user)->rz; }
+
+static void turn(void *user, double beta)
+{
+    const solve *q = user;
+    q->v->beta = (float)beta;
+    launch(q, q->k->sph_viscous_turn, NULL);
+}
+
+static double apply(void *user)
+{
+    const solve *q = user;
+    double t[TOBI_TOTALS];
+    q->v->viscous.of = q->v->viscous.direction;
+    launch(q, q->k->sph_viscous_spin, NULL);
+    launch(q, q->k->sph_viscous_product, NULL);
+    if (q->s->sim->body_count > 0) tobi_boundary_add_viscous_product(q->s);
+    launch(q, q->k->sph_viscous_curve, t);
+    return t[0];
+}
+
+static void keep(solve *q, const double *t)
+{
+    q->rz = t[0];
+    q->residual = t[1];
+}
+
+static void advance(void *user, double alpha)
+{
+    solve *q = user;
+    double t[TOBI_TOTALS];
+    q->v->alpha = (float)alpha;
+    launch(q, q->k->sph_viscous_advance, t);
+    keep(q, t);
+    q->iterations++;
+}
+
+/* The true residual, and squares of it and of the velocity before viscosity. */
+static void find_residual(solve *q, double *t)
+{
+    q->v->viscous.of = q->v->viscous.x;
+    launch(q, q->k->sph_viscous_spin, NULL);
+    launch(q, q->k->sph_viscous_rows, NULL);
+    if (q->s->sim->body_count > 0) tobi_boundary_add_viscous_rows(q->s);
+    launch(q, q->k->sph_viscous_measure, t);
+    keep(q, t);
+}
+
+static void copy_velocities(const tobi_system *s, tobi_float4 *out)
+{
+    memcpy(out, s->particles.velocity, (size_t)s->particles.count*sizeof *out);
+}
+
+void sph_viscosity_begin(tobi_system *s, sph_view *v, const sph_kernels *k)
+{
+    if (!v->implicit) return;
+    copy_velocities(s, v->viscous.x);
+    if (v->phase) sph_phases_set(s, v, k);
+}
+
+static void add_acceleration(const void *view, int64_t begin, int64_t end)
+{
+    const sph_view *v = view;
+    for (int64_t i = begin; i < end; i++)
+        for (int c = 0; c < 3; c++) (&v->velocity[i].x)[c] += v->dt*(&v->accel[i].x)[c];
+}
+
+static void expect_pressure(tobi_system *s, sph_view *v, const sph_kernels *k)
+{
+    sph_show_pressure(s);
+    tobi_launch(&s->sim->exec, k->sph_pressure_accel, v, 0, s->particles.count, NULL);
+    tobi_loop(s->sim->exec.threads, s->particles.count, 0, add_acceleration, v);
+}
+
+void sph_viscosity_solve(tobi_system *s, sph_view *v, const sph_kernels *k, void (*expect)(tobi_system *s))
+{
+    static const tobi_cg_steps steps = { ends, precondition, turn, apply, advance };
+    solve q = { .s = s, .v = v, .k = k };
+    double t[TOBI_TOTALS];
+    if (!v->implicit) return;
+    copy_velocities(s, v->viscous.expected);
+    if (expect) expect(s);
+    else expect_pressure(s, v, k);
+    launch(&q, k->sph_viscous_expect, NULL);
+    find_residual(&q, t);
+    q.goal = fmin(MOST*MOST*t[2], fmax(TOLERANCE*TOLERANCE*t[1], LEAST*LEAST*t[2]));
+    tobi_cg_iterate(&steps, &q);
+    find_residual(&q, t);
+    launch(&q, k->sph_viscous_finish, t);
+    for (int a = 0; a < 3; a++) sph_of(s)->friction[a] = t[a]/s->dt;
+    if (s->sim->body_count > 0) tobi_boundary_keep_friction(s);
+    s->info.viscosity_iterations = q.iterations;
+    s->info.viscosity_failed = !(q.residual <= 4*q.goal);      /* the true residual, in float */
+}
+
+void sph_viscosity_add(tobi_system *s, sph_view *v, const sph_kernels *k)
+{
+    solve q = { .s = s, .v = v, .k = k };
+    double t[TOBI_TOTALS];
+    if (!v->implicit) return;
+    copy_velocities(s, v->viscous.expected);
+    launch(&q, k->sph_viscous_expect, NULL);
+    find_residual(&q, t);
+    launch(&q, k->sph_viscous_finish, t);
+}
+
+void sph_viscosity_load(tobi_system *s)
+{
+    if (!s->sim->def.implicit_viscosity) return;
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] += sph_of(s)->friction[a];
+}
