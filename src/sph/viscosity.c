@@ -80,9 +80,18 @@ static void find_residual(solve *q, double *t)
     keep(q, t);
 }
 
-static void copy_velocities(const tobi_system *s, tobi_float4 *out)
+typedef struct copying { const tobi_float4 *from; tobi_float4 *to; } copying;
+
+static void copy_range(const void *view, int64_t begin, int64_t end)
 {
-    memcpy(out, s->particles.velocity, (size_t)s->particles.count*sizeof *out);
+    const copying *c = view;
+    memcpy(c->to + begin, c->from + begin, (size_t)(end - begin)*sizeof *c->to);
+}
+
+static void copy_velocities(const tobi_system *s, tobi_float4 *to)
+{
+    const copying c = { s->particles.velocity, to };
+    tobi_loop(s->sim->exec.threads, s->particles.count, 0, copy_range, &c);
 }
 
 void sph_viscosity_begin(tobi_system *s, sph_view *v, const sph_kernels *k)

@@ -14,8 +14,7 @@ a free surface feels no stress). Rate from the peaks of the kinetic energy over 
 water, which is what the method loses by itself. Channel: 0.2 m between no-slip walls, periodic, 20 Pa s, driven by a
 uniform force; mean velocity over g H^2 / (12 nu) after five times H^2 / (pi^2 nu). Sheet: 2 cm wide, 30 Pa s, 1400 kg/m3,
 falls at 0.3 m/s from 0.25 m: it folds, as Re is below 0.56 and the height above 10 widths
-(J. O. Cruickshank, J. Fluid Mech. 193, 1988, 111). Implicit viscosity costs iterations and saves steps.""",
-            methods=("isph",))
+(J. O. Cruickshank, J. Fluid Mech. 193, 1988, 111). Implicit viscosity costs iterations and saves steps.""")
 
 K, DEPTH, AMPLITUDE, BOXES = 2*math.pi, 0.5, 0.02, 20
 OMEGA = math.sqrt(9.81*K*math.tanh(K*DEPTH))
@@ -58,15 +57,15 @@ def decay_rate(method, across, viscosity, implicit):
 
 curves = []
 for method in ("dfsph", "isph"):
-    for across in case.pick((40,), (40, 80, 160)):
+    for across in case.pick((40,), (20, 40, 80)):
         for implicit in ("false", "true"):
             alone = decay_rate(method, across, 1e-3, implicit)
             ratio = (decay_rate(method, across, 5, implicit) - alone)/(4*0.005*K*K)
             name = f"{method}, {NAMES[implicit]}: wave of {across} d"
             if implicit == "true":
                 case.figure(f"{name}: rate of damping over theory", ratio, "1 within 0.1", abs(ratio - 1) <= 0.1)
-                # 0.94 and 0.94 seen with 40; half of it would be the Laplacian's.
-                case.hold(f"{name}: between 0.8 and 1.1 ({ratio:.3f})", 0.8 <= ratio <= 1.1)
+                # 0.80 to 1.01 seen; the Laplacian has 0.39 to 0.55.
+                case.hold(f"{name}: between 0.7 and 1.1 ({ratio:.3f})", 0.7 <= ratio <= 1.1)
             else:
                 case.state(f"{name}: rate of damping over theory", ratio)
 
@@ -77,10 +76,10 @@ for method in ("dfsph", "isph"):
             label = f"channel_{method}_{across}_{NAMES[implicit]}"
             end = 5*HEIGHT**2/(math.pi**2*NU)
             scene = case.write_scene(label, {
-                "dimension": 2, "domain": {"min": [0, 0], "max": [0.1, HEIGHT], "walls": {"x": "periodic", "y": "no-slip"}},
+                "dimension": 2, "domain": {"min": [0, 0], "max": [0.2, HEIGHT], "walls": {"x": "periodic", "y": "no-slip"}},
                 "gravity": [FORCE, 0], "spacing": HEIGHT/across, "end_time": end, "method": method,
                 "implicit_viscosity": implicit == "true",
-                "fluids": [{"name": "oil", "viscosity": 1000*NU, "fill": [{"box": {"min": [0, 0], "max": [0.1, HEIGHT]}}]}],
+                "fluids": [{"name": "oil", "viscosity": 1000*NU, "fill": [{"box": {"min": [0, 0], "max": [0.2, HEIGHT]}}]}],
                 "output": {"interval": end, "fields": ["velocity"]}})
             out = case.run(f"{label}_out", scene=scene)
             speed = mean(read_vtu(read_series(out)[-1][1])["velocity"][0::3])/(FORCE*HEIGHT**2/(12*NU))
@@ -98,7 +97,10 @@ if not case.smoke:
             "fluids": [{"name": "honey", "density": 1400, "viscosity": 30}],
             "inlets": [{"name": "slit", "centre": [0, 0.25], "normal": [0, -1], "width": 0.02, "speed": 0.3}],
             "output": {"interval": 0.02, "fields": ["velocity"]}})
-        out = case.run(f"sheet_{method}_out", scene=scene)
+        out = case.run(f"sheet_{method}_out", scene=scene, may_fail=True)
+        case.figure(f"{method}: the sheet runs to its end", int(bool(out)), "1", bool(out))
+        if not out:
+            continue
         # the middle of the sheet a tenth of the height above the heap swings to both sides
         place = []
         for _, path in read_series(out):
