@@ -215,27 +215,24 @@ tobi_status isph_begin(tobi_system *s, tobi_error *err)
     return TOBI_OK;
 }
 
-/* Of what pressure adds to the velocities kept in viscous_expected, nothing at a free surface. */
-static void fade_at_surface(const void *view, int64_t begin, int64_t end)
+/* Takes back what pressure has added to the velocities kept in viscous_expected, where it pulls. */
+static void expect_no_pull(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const float *gate = ((const isph *)s->state)->solver.view.gate;
-    const tobi_float4 *before = sph_fields_of(&s->particles)->viscous_expected;
+    const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t i = begin; i < end; i++)
-        for (int c = 0; c < 3; c++) {
-            float *u = &(&s->particles.velocity[i].x)[c];
-            *u -= gate[i]*(*u - (&before[i].x)[c]);
-        }
+        if (f->pressure[i] < 0) s->particles.velocity[i] = f->viscous_expected[i];
 }
 
-/* Gravity and the pressure of the last step: implicit viscosity acts on what is left of both. A surface
-   changes, and with it its pressure: a thin sheet swung up to 15 m/s. */
+/* Gravity and the pressure of the last step: implicit viscosity acts on what is left of both. Under a free
+   surface pressure pulls where liquid is drawn thin, and that changes from step to step: a sheet swung up to
+   15 m/s. */
 static void expect(tobi_system *s)
 {
     isph *m = s->state;
     sph_show_pressure(s);
     launch(s, m, m->kernel->isph_projection, NULL);
-    tobi_loop(s->sim->exec.threads, s->particles.count, 0, fade_at_surface, s);
+    if (m->solver.view.open) tobi_loop(s->sim->exec.threads, s->particles.count, 0, expect_no_pull, s);
     launch(s, m, m->kernel->isph_gravity, NULL);
 }
 
