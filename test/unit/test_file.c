@@ -1,6 +1,7 @@
 /* Files that appear whole or not at all: only plain files are replaced, and no link is followed. */
 #define _GNU_SOURCE 1
 #include "base/file.h"
+#include "own_folder.h"
 #include "io/csv.h"
 #include "io/store.h"
 #include <fcntl.h>
@@ -13,7 +14,6 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-static char folder[] = "/tmp/tobi_io_file_XXXXXX";
 
 static tobi_status write_text(const char *path, const char *text, int synced, tobi_error *err)
 {
@@ -88,25 +88,11 @@ static void what_stands_in_the_way_is_removed(void **state)
     rmdir("own.part");
 }
 
-static int set_up(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    char command[100];
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return chdir("/") == 0 ? system(command) : -1;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(only_plain_files_are_replaced),
         cmocka_unit_test(what_stands_in_the_way_is_removed),
     };
-    return cmocka_run_group_tests_name("base/file", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("base/file", tests, enter_own_folder, leave_own_folder);
 }

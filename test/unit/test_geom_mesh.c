@@ -1,5 +1,6 @@
 /* Reading, welding, placing, orienting and refining meshes, and what is said about bad ones. */
 #include "test_geom_solids.h"
+#include "own_folder.h"
 #include "geom/edges.h"
 #include "geom/file_checks.h"
 #include <sys/stat.h>
@@ -506,20 +507,6 @@ static void the_test_solids_are_closed_and_sized(void **state)
     }
 }
 
-static int work_apart(void **state)
-{
-    static char folder[] = "/tmp/tobi_geom_XXXXXX";
-    *state = folder;
-    return !mkdtemp(folder) || chdir(folder);
-}
-
-static int clean_up(void **state)
-{
-    char command[200];
-    snprintf(command, sizeof command, "rm -rf '%s'", (char *)*state);
-    return chdir("/") || system(command);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -544,5 +531,5 @@ int main(void)
         cmocka_unit_test(the_fish_is_as_described),
         cmocka_unit_test(the_test_solids_are_closed_and_sized),
     };
-    return cmocka_run_group_tests(tests, work_apart, clean_up);
+    return cmocka_run_group_tests(tests, enter_own_folder, leave_own_folder);
 }

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "calls.h"
+#include "own_folder.h"
 #include "tobiuo/drawing.h"
 #include "tobiuo/motion.h"
 #include "tobiuo/overlay.h"
@@ -447,5 +448,5 @@ int main(void)
         cmocka_unit_test(scenes),
         cmocka_unit_test(scenes_in_memory),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, enter_own_folder, leave_own_folder);
 }

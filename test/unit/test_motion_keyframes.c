@@ -1,6 +1,7 @@
 /* Keyframes: what the columns mean, exact figures where the curve is exact, smooth rates, and what is said
    about bad files. */
 #include "tobiuo/motion.h"
+#include "own_folder.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -247,5 +248,5 @@ int main(void)
         cmocka_unit_test(finer_rows_come_closer),
         cmocka_unit_test(bad_files_are_named_with_their_line),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, enter_own_folder, leave_own_folder);
 }

@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "calls.h"
+#include "own_folder.h"
 #include "exec/exec.h"
 #include "geom/mesh.h"
 #include "geom/quadrature.h"
@@ -473,5 +474,5 @@ int main(void)
         cmocka_unit_test(checkpoints_of_runs),
         cmocka_unit_test(runs),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, enter_own_folder, leave_own_folder);
 }
