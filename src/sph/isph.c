@@ -225,8 +225,8 @@ static void expect_no_pull(const void *view, int64_t begin, int64_t end)
 }
 
 /* Gravity and the pressure of the last step: implicit viscosity acts on what is left of both. Under a free
-   surface pressure pulls where liquid is drawn thin, and that changes from step to step: a sheet swung up to
-   15 m/s. */
+   surface pressure pulls where liquid is drawn thin, and that changes from step to step: a sheet swung ever
+   faster. */
 static void expect(tobi_system *s)
 {
     isph *m = s->state;

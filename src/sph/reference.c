@@ -122,15 +122,24 @@ static int looks_out(const tobi_system *s, int64_t i)
     return 0;
 }
 
+/* Still water presses below. */
+static double pressed_from(const tobi_reference *w) { return w->level + w->cover; }
+
+static void keep_open(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    float *depth = sph_fields_of(&s->particles)->surface_depth;
+    const double least = pressed_from(&sph_of(s)->reference);
+    for (int64_t i = begin; i < end; i++)
+        if (!(depth[i] > least) || !looks_out(s, i)) depth[i] = 0;
+}
+
 double sph_reference_open(tobi_system *s, double low)
 {
     const tobi_reference *w = &sph_of(s)->reference;
-    float *depth = sph_fields_of(&s->particles)->surface_depth;
-    const double least = w->level + w->cover;      /* still water presses below */
     double middle;
-    if (!(w->push > 0 && low > least) || s->sim->soft.solids) return 0;
-    for (int64_t i = 0; i < s->particles.count; i++)
-        if (!(depth[i] > least) || !looks_out(s, i)) depth[i] = 0;
+    if (!(w->push > 0 && low > pressed_from(w)) || s->sim->soft.solids) return 0;
+    tobi_loop(s->sim->exec.threads, s->particles.count, 0, keep_open, s);
     return find_low(s, &middle);
 }
 

@@ -58,7 +58,7 @@ static void bind_stage(sph_view *v, const sph_fields *f)
     v->precondition = f->precondition; v->residual = f->residual; v->product = f->product;
     v->delta = f->delta;
     v->moment = f->moment; v->target_divergence = f->target_divergence;
-    v->viscous = (sph_viscous_rows){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
+    v->viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
                                     f->viscous_direction, f->viscous_product, f->viscous_inverse, NULL};
 }
 

@@ -15,11 +15,11 @@ typedef struct tobi_plane { int axis; float sign; double at; int no_slip; float 
 enum { SPH_SPARSE = 2 };
 
 /* Of implicit viscosity, viscosity.k.h; NULL without it. */
-typedef struct sph_viscous_rows {
+typedef struct sph_viscous_fields {
     tobi_float4 *TOBI_RESTRICT x, *TOBI_RESTRICT expected, *TOBI_RESTRICT residual, *TOBI_RESTRICT direction,
                 *TOBI_RESTRICT product, *TOBI_RESTRICT inverse;
-    const tobi_float4 *of;           /* x or direction: what the sums are over     */
-} sph_viscous_rows;
+    const tobi_float4 *operand;      /* x or direction: what the sums are over     */
+} sph_viscous_fields;
 
 typedef struct sph_view {
     int64_t count;
@@ -38,7 +38,7 @@ typedef struct sph_view {
     float *TOBI_RESTRICT precondition, *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
     float *TOBI_RESTRICT target_divergence;   /* it and moment: with `exact`                          */
     tobi_float4 *TOBI_RESTRICT moment;
-    sph_viscous_rows viscous;
+    sph_viscous_fields viscous;
     tobi_float4 *TOBI_RESTRICT phase, *TOBI_RESTRICT interface;   /* NULL with one fluid, phases.k.h */
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
     float *TOBI_RESTRICT pressure;            /* of the solve at hand; NULL for walls: none */

@@ -45,7 +45,7 @@ static double apply(void *user)
 {
     const solve *q = user;
     double t[TOBI_TOTALS];
-    q->v->viscous.of = q->v->viscous.direction;
+    q->v->viscous.operand = q->v->viscous.direction;
     launch(q, q->k->sph_viscous_spin, NULL);
     launch(q, q->k->sph_viscous_product, NULL);
     if (q->s->sim->body_count > 0) tobi_boundary_add_viscous_product(q->s);
@@ -72,7 +72,7 @@ static void advance(void *user, double alpha)
 /* The true residual, and squares of it and of the velocity before viscosity. */
 static void find_residual(solve *q, double *t)
 {
-    q->v->viscous.of = q->v->viscous.x;
+    q->v->viscous.operand = q->v->viscous.x;
     launch(q, q->k->sph_viscous_spin, NULL);
     launch(q, q->k->sph_viscous_rows, NULL);
     if (q->s->sim->body_count > 0) tobi_boundary_add_viscous_rows(q->s);

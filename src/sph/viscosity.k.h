@@ -33,7 +33,7 @@ typedef struct sph_viscous_spin_acc {
 } sph_viscous_spin_acc;
 TOBI_FN void sph_viscous_spin_start(const sph_view *v, int64_t i, sph_viscous_spin_acc *a)
 {
-    const tobi_float4 w = v->viscous.of[i];
+    const tobi_float4 w = v->viscous.operand[i];
     a->wx = lane_set(w.x); a->wy = lane_set(w.y); a->wz = lane_set(w.z);
     a->x = a->y = a->z = a->along = lane_set(0);
     a->mu = sph_viscous_own(v, i);
@@ -45,7 +45,7 @@ TOBI_FN void sph_viscous_spin_pair(const sph_view *v, int64_t i, const tobi_neig
     lane x, y, z, none;
     const lane f = sph_viscous_weight(v, n, a->mu, shape);
     (void)i;
-    lane_load_float4(v->viscous.of, n->j, &x, &y, &z, &none);
+    lane_load_float4(v->viscous.operand, n->j, &x, &y, &z, &none);
     x = f*(a->wx - x); y = f*(a->wy - y); z = f*(a->wz - z);
     a->x += n->dy*z - n->dz*y; a->y += n->dz*x - n->dx*z; a->z += n->dx*y - n->dy*x;
     a->along += n->dx*x + n->dy*y + n->dz*z;
@@ -70,7 +70,7 @@ TOBI_FN void sph_viscous_spin_finish(const sph_view *v, int64_t i, sph_viscous_s
 typedef struct sph_viscous_acc { lane wx, wy, wz, ox, oy, oz, ow, x, y, z, all, mu; } sph_viscous_acc;
 TOBI_FN void sph_viscous_begin(const sph_view *v, int64_t i, sph_viscous_acc *a)
 {
-    const tobi_float4 w = v->viscous.of[i], o = v->accel[i];
+    const tobi_float4 w = v->viscous.operand[i], o = v->accel[i];
     a->wx = lane_set(w.x); a->wy = lane_set(w.y); a->wz = lane_set(w.z);
     a->ox = lane_set(o.x); a->oy = lane_set(o.y); a->oz = lane_set(o.z); a->ow = lane_set(o.w);
     a->x = a->y = a->z = a->all = lane_set(0);
@@ -81,7 +81,7 @@ TOBI_FN void sph_viscous_add(const sph_view *v, int64_t i, const tobi_neighbors 
 {
     lane x, y, z, ox, oy, oz, ow, none;
     const lane f = sph_viscous_weight(v, n, a->mu, shape);
-    lane_load_float4(v->viscous.of, n->j, &x, &y, &z, &none);
+    lane_load_float4(v->viscous.operand, n->j, &x, &y, &z, &none);
     lane_load_float4(v->accel, n->j, &ox, &oy, &oz, &ow);
     ox = 0.5f*(ox + a->ox); oy = 0.5f*(oy + a->oy); oz = 0.5f*(oz + a->oz);
     ow = SPH_VISCOUS_BULK*(ow + a->ow);
@@ -125,7 +125,8 @@ TOBI_FN void sph_viscous_rows_pair(const sph_view *v, int64_t i, const tobi_neig
 }
 TOBI_FN void sph_viscous_rows_finish(const sph_view *v, int64_t i, sph_viscous_acc *a, double *totals)
 {
-    const tobi_float4 sum = lane_sum4(a->x, a->y, a->z, a->all), u = v->velocity[i], x = v->viscous.of[i];
+    const tobi_float4 sum = lane_sum4(a->x, a->y, a->z, a->all), u = v->velocity[i],
+                      x = v->viscous.operand[i];
     const float rho = 1/v->inverse_density[v->fluid[i]];
     float rate[3], drive[3];
     tobi_float4 r = {0, 0, 0, 0}, inverse = {0, 0, 0, 0};
@@ -153,7 +154,7 @@ TOBI_FN void sph_viscous_product_pair(const sph_view *v, int64_t i, const tobi_n
 }
 TOBI_FN void sph_viscous_product_finish(const sph_view *v, int64_t i, sph_viscous_acc *a, double *totals)
 {
-    const tobi_float4 sum = lane_sum4(a->x, a->y, a->z, lane_set(0)), q = v->viscous.of[i];
+    const tobi_float4 sum = lane_sum4(a->x, a->y, a->z, lane_set(0)), q = v->viscous.operand[i];
     const float rho = 1/v->inverse_density[v->fluid[i]];
     float rate[3], drive[3];
     tobi_float4 out = {0, 0, 0, 0};

@@ -112,7 +112,7 @@ static void rig_bind_viscosity(rig *g, double mu)
 {
     const sph_fields *f = sph_fields_of(&g->p);
     g->view.dynamic = (float)mu;
-    g->view.viscous = (sph_viscous_rows){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
+    g->view.viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
                                          f->viscous_direction, f->viscous_product, f->viscous_inverse,
                                          f->viscous_velocity};
 }
