@@ -24,6 +24,8 @@ static const struct {
     const char *why;
 } keys[] = {
     { "world", "cfl", SPH, "is for the SPH methods; mlsmpm has its own, mlsmpm.cfl" },
+    { "world", "implicit_viscosity", SPH, "is for liquids of the SPH methods; liquids of mlsmpm have "
+                                                     "their own viscosity" },
     { "world", "domain.contact_angle", SPH, "is for liquids of the SPH methods; mlsmpm has no "
                                                       "surface tension" },
     { "world", "domain.friction", SOLIDS, "is for solids of mlsmpm; what liquids do at a side say "

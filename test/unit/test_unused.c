@@ -80,6 +80,8 @@ typedef struct row { const char *key; lines bad, good; const char *place, *why; 
 
 static const row rows[] = {
     { "cfl", IN_WORLD("\n\"cfl\": 0.2,", "mlsmpm", "wcsph"), "s.json:2:1: cfl: ", "mlsmpm has its own" },
+    { "implicit_viscosity", IN_WORLD("\n\"implicit_viscosity\": true,", "mlsmpm", "wcsph"),
+      "s.json:2:1: implicit_viscosity: ", "is for liquids of the SPH methods" },
     { "contact_angle", IN_DOMAIN(", \"contact_angle\": 60", "mlsmpm", "dfsph"), "s.json:2:",
       "domain.contact_angle: is for liquids of the SPH methods" },
     { "nothing", IN_DOMAIN(", \"friction\": 0.5", "dfsph", "mlsmpm"), "s.json:2:",
