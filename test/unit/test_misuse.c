@@ -175,6 +175,17 @@ static void names_that_are_taken(void **state)
     OK(tobi_world_add_probe(w, &probe, &err));
     REFUSED(tobi_world_add_probe(w, &probe, &err), TOBI_INVALID,
             "probe 'probe': probe 0 has that name already");
+    tobi_inlet_def in = tobi_default_inlet_def();
+    tobi_outlet_def out = tobi_default_outlet_def();
+    in.speed = in.normal[0] = out.normal[0] = 1;
+    in.width = in.height = out.width = out.height = in.centre[1] = in.centre[2] = 0.2;
+    in.centre[0] = 0.4;
+    out.centre[1] = out.centre[2] = 0.2;
+    OK(tobi_world_add_inlet(w, &in, &err));
+    OK(tobi_world_add_outlet(w, &out, &err));
+    REFUSED(tobi_world_add_inlet(w, &in, &err), TOBI_INVALID, "inlet 'inlet': inlet 0 has that name already");
+    REFUSED(tobi_world_add_outlet(w, &out, &err), TOBI_INVALID,
+            "outlet 'outlet': outlet 0 has that name already");
     tobi_world_destroy(w);
 }
 
