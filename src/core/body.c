@@ -456,6 +456,14 @@ static void add_flow(int64_t n, const double (*flow)[3], double (*out)[3])
     for (int64_t i = 0; i < n; i++) vec3_add_scaled(out[i], out[i], 1, flow[i]);
 }
 
+void tobi_body_carry(const tobi_body *b, const double place[3], const double u[6], double out[3])
+{
+    double arm[3];
+    for (int a = 0; a < 3; a++) arm[a] = place[a] + b->lower[a] - b->centre[a];
+    vec3_cross(out, u + 3, arm);
+    for (int a = 0; a < 3; a++) out[a] += u[a];
+}
+
 void tobi_body_set_velocity(tobi_body *b, const double velocity[3], const double spin[3])
 {
     memcpy(b->rigid.driven, velocity, 3*sizeof *velocity);

@@ -151,6 +151,8 @@ void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin
 void tobi_body_place_next(tobi_body *b);
 /* Gives every point of a free body the velocities of a rigid motion at its present pose (m/s, rad/s). */
 void tobi_body_set_velocity(tobi_body *b, const double velocity[3], const double spin[3]);
+/* m/s: of a place, m from the lower corner of the box, by velocities u of the body (m/s, rad/s). */
+void tobi_body_carry(const tobi_body *b, const double place[3], const double u[6], double out[3]);
 /* Its mesh, in the pose of the definition before scale, rotation and translation: the file's or that of its
    one shape. body_shape.c */
 /* Which key of a definition gives the shape: "mesh", "box" ... */

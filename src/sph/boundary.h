@@ -29,11 +29,8 @@ void tobi_boundary_mark_near_body(struct tobi_system *s);
 void tobi_boundary_add_gradients(struct tobi_system *s);
 /* Adds dt times hydrostatic pressure of mirrors and no-slip friction of the bodies to the velocities. */
 void tobi_boundary_add_forces(struct tobi_system *s);
-/* Implicit viscosity: the friction of bodies in residual and diagonal, and in the product; and that of the
-   velocity found, kept for the reaction. */
-void tobi_boundary_add_viscous_rows(struct tobi_system *s);
-void tobi_boundary_add_viscous_product(struct tobi_system *s);
-void tobi_boundary_keep_friction(struct tobi_system *s);
+/* Runs visit over ranges of entries, with the system as its view. */
+void tobi_boundary_visit_entries(struct tobi_system *s, tobi_range visit);
 /* Turns the surface normals of particles nearer than 1.5 spacings to the bodies' angles of contact. */
 void tobi_boundary_turn_normals(struct tobi_system *s);
 /* Moves the particles with `near_body` by dt^2 accel, a tenth of a spacing at most and not into bodies or

@@ -4,6 +4,7 @@
 #include "sph/boundary.h"
 #include "sph/boundary_look.h"
 #include "sph/state.h"
+#include "sph/viscous_bodies.h"
 #include "sph/wall_law.h"
 #include <math.h>
 #include <string.h>
@@ -157,6 +158,7 @@ static tobi_status reserve(tobi_system *s, tobi_error *err)
     const int64_t parts = n->count/TOBI_BLOCK + 1 + bodies;
     TOBI_TRY(tobi_boundary_grow(&n->total, &n->total_capacity, bodies, err));
     TOBI_TRY(tobi_boundary_grow(&n->answer, &n->answer_capacity, bodies, err));
+    TOBI_TRY(tobi_boundary_grow(&n->viscous, &n->viscous_capacity, bodies, err));
     TOBI_TRY(tobi_boundary_grow(&n->part, &n->part_capacity, parts > blocks ? parts : blocks, err));
     TOBI_TRY(tobi_boundary_grow(&n->caught, &n->caught_capacity, blocks*TOBI_BLOCK, err));
     return tobi_boundary_grow(&n->caught_block, &n->blocks_capacity, blocks, err);
@@ -199,25 +201,17 @@ tobi_status tobi_boundary_measure(tobi_system *s, tobi_error *err)
     return TOBI_OK;
 }
 
-static void visit_entries(tobi_system *s, tobi_range visit)
+void tobi_boundary_visit_entries(tobi_system *s, tobi_range visit)
 {
     tobi_loop(s->sim->exec.threads, sph_of(s)->links.count, 0, visit, s);
 }
-
-/* Runs over entries; those of one particle are handled together, where the first of them stands. */
-#define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
-    for (int64_t k = begin; k < end; k++)                                                                  \
-        for (int64_t i = sph_of(s)->links.link[k].particle,                                                \
-                     once = sph_fields_of(&s->particles)->last_link[i] == k; once; once = 0)               \
-            for (const tobi_boundary_entry *e = &sph_of(s)->links.entry[k]; e;                             \
-                 e = tobi_boundary_next(&sph_of(s)->links, e))
 
 static void add_gradients(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     const sph_fields *f = sph_fields_of(&s->particles);
     const tobi_boundary_links *n = &sph_of(s)->links;
-    FOR_NEAR_PARTICLES(s, k, i, e) {
+    SPH_FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *w = &f->wall[i];
         const double *g = n->link[e - n->entry].gradient;
         w->x += (float)g[0]; w->y += (float)g[1]; w->z += (float)g[2];
@@ -226,7 +220,7 @@ static void add_gradients(const void *view, int64_t begin, int64_t end)
     }
 }
 
-void tobi_boundary_add_gradients(tobi_system *s) { visit_entries(s, add_gradients); }
+void tobi_boundary_add_gradients(tobi_system *s) { tobi_boundary_visit_entries(s, add_gradients); }
 
 /* Acceleration by hydrostatic pressure of mirrors and friction of one entry, for velocity u; implicit
    viscosity finds friction later. */
@@ -255,7 +249,7 @@ static void entry_accel(const tobi_system *s, int64_t i, const tobi_boundary_ent
 static void add_forces(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    FOR_NEAR_PARTICLES(s, k, i, e) {
+    SPH_FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *v = &s->particles.velocity[i];
         double u[3] = {v->x, v->y, v->z}, hydrostatic[3], drag[3];
         entry_accel(s, i, e, u, hydrostatic, drag);
@@ -268,64 +262,7 @@ static void add_forces(const void *view, int64_t begin, int64_t end)
     }
 }
 
-void tobi_boundary_add_forces(tobi_system *s) { visit_entries(s, add_forces); }
-
-/* Friction of one entry on a particle at velocity w, eq. (3) of viscosity.md, m/s2. moving: 1 the body goes
-   as it does, 0 it stands. */
-static void entry_friction(const tobi_system *s, int64_t i, const tobi_boundary_entry *e, tobi_float4 w,
-                           int moving, double out[3])
-{
-    const tobi_fluid *f = &s->fluid[s->particles.fluid[i]];
-    const double u[3] = {w.x, w.y, w.z};
-    for (int c = 0; c < 3; c++)
-        out[c] = f->viscosity/f->density*((moving ? e->drag_velocity[c] : 0) - e->drag*u[c]);
-    const double normal = dot(out, e->foot_normal);
-    for (int c = 0; c < 3; c++) out[c] -= normal*e->foot_normal[c];
-}
-
-static void add_viscous_rows(const void *view, int64_t begin, int64_t end)
-{
-    const tobi_system *s = view;
-    const sph_fields *f = sph_fields_of(&s->particles);
-    FOR_NEAR_PARTICLES(s, k, i, e) {
-        const tobi_fluid *liquid = &s->fluid[s->particles.fluid[i]];
-        float *r = &f->viscous_residual[i].x, *inverse = &f->viscous_inverse[i].x;
-        double add[3];
-        entry_friction(s, i, e, f->viscous_velocity[i], 1, add);
-        for (int c = 0; c < 3 && inverse[c] > 0; c++) {
-            const double n = e->foot_normal[c];
-            r[c] += (float)(s->dt*liquid->density*add[c]);
-            inverse[c] = (float)(1/(1/inverse[c] + s->dt*liquid->viscosity*e->drag*(1 - n*n)));
-        }
-    }
-}
-
-static void add_viscous_product(const void *view, int64_t begin, int64_t end)
-{
-    const tobi_system *s = view;
-    const sph_fields *f = sph_fields_of(&s->particles);
-    FOR_NEAR_PARTICLES(s, k, i, e) {
-        const double scale = s->dt*s->fluid[s->particles.fluid[i]].density;
-        float *product = &f->viscous_product[i].x;
-        double add[3];
-        entry_friction(s, i, e, f->viscous_direction[i], 0, add);
-        for (int c = 0; c < 3 && f->viscous_inverse[i].x > 0; c++) product[c] -= (float)(scale*add[c]);
-    }
-}
-
-static void keep_friction(const void *view, int64_t begin, int64_t end)
-{
-    const tobi_system *s = view;
-    const sph_fields *f = sph_fields_of(&s->particles);
-    FOR_NEAR_PARTICLES(s, k, i, e) {
-        tobi_boundary_entry *own = (tobi_boundary_entry *)e;
-        if (f->viscous_inverse[i].x > 0) entry_friction(s, i, e, f->viscous_velocity[i], 1, own->friction);
-    }
-}
-
-void tobi_boundary_add_viscous_rows(tobi_system *s) { visit_entries(s, add_viscous_rows); }
-void tobi_boundary_add_viscous_product(tobi_system *s) { visit_entries(s, add_viscous_product); }
-void tobi_boundary_keep_friction(tobi_system *s) { visit_entries(s, keep_friction); }
+void tobi_boundary_add_forces(tobi_system *s) { tobi_boundary_visit_entries(s, add_forces); }
 
 /* Keeps the place x + way of particle i at least that far from the bodies it sees. */
 static void keep_away(const tobi_system *s, int64_t i, double least, double way[3])
@@ -367,7 +304,7 @@ static void turn_normals(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     const tobi_boundary_links *links = &sph_of(s)->links;
-    FOR_NEAR_PARTICLES(s, k, i, e) {
+    SPH_FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *n = &sph_fields_of(&s->particles)->normal[i];
         double u[3] = {n->x, n->y, n->z}, across = dot(u, e->foot_normal), size = 0;
         for (int c = 0; c < 3; c++) {
@@ -381,13 +318,14 @@ static void turn_normals(const void *view, int64_t begin, int64_t end)
     }
 }
 
-void tobi_boundary_turn_normals(tobi_system *s) { visit_entries(s, turn_normals); }
+void tobi_boundary_turn_normals(tobi_system *s) { tobi_boundary_visit_entries(s, turn_normals); }
 
 int64_t tobi_boundary_links_bytes(const tobi_boundary_links *n)
 {
     return n->link_capacity*(int64_t)sizeof *n->link + n->capacity*(int64_t)sizeof *n->entry +
            n->first_capacity*(int64_t)sizeof *n->first +
            n->total_capacity*(int64_t)sizeof *n->total + n->answer_capacity*(int64_t)sizeof *n->answer +
+           n->viscous_capacity*(int64_t)sizeof *n->viscous +
            n->part_capacity*(int64_t)sizeof *n->part + n->caught_capacity*(int64_t)sizeof *n->caught +
            n->blocks_capacity*(int64_t)sizeof *n->caught_block +
            n->bins_capacity*(int64_t)sizeof *n->bins + n->start_capacity*(int64_t)sizeof *n->bin_start +
@@ -403,6 +341,7 @@ void tobi_boundary_links_free(tobi_boundary_links *n)
     tobi_array_free(n->first);
     tobi_array_free(n->total);
     tobi_array_free(n->answer);
+    tobi_array_free(n->viscous);
     tobi_array_free(n->part);
     tobi_array_free(n->caught);
     tobi_array_free(n->caught_block);

@@ -28,6 +28,7 @@ typedef struct tobi_boundary_links {
     int64_t *first;           /* [bodies + 1] first entry of each body                            */
     double (*total)[TOBI_TOTALS];    /* [bodies] by tobi_boundary_sum                             */
     double (*answer)[6];      /* [bodies] sph/couple.k.h                                          */
+    struct sph_viscous_body *viscous;       /* [bodies] sph/viscous_bodies.h                      */
     tobi_block_sum *part;     /* scratch of sums over the particles of each body                  */
     int32_t *caught;          /* [particles] of each block first those that bodies have caught    */
     tobi_caught_block *caught_block;
@@ -44,7 +45,8 @@ typedef struct tobi_boundary_links {
     int64_t row_count;
     int64_t *found;           /* [row_count] particles that see the body, then entries before     */
     int32_t *hit;             /* those particles                                                  */
-    int64_t first_capacity, total_capacity, answer_capacity, part_capacity, caught_capacity, blocks_capacity;
+    int64_t first_capacity, total_capacity, answer_capacity, viscous_capacity, part_capacity;
+    int64_t caught_capacity, blocks_capacity;
     int64_t row_room[TOBI_POINT_ROWS];
     int64_t bins_capacity, start_capacity, point_capacity, row_capacity, found_capacity;
     int64_t hit_capacity;

@@ -79,11 +79,12 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
         double mass = s->smoothing.volume * s->fluid[s->particles.fluid[l->particle]].density,
                force[3], arm[3], turning[3] = {0, 0, 0};
         const double *accel = r->viscous ? e->friction : e->hydrostatic;
+        const int stress = r->viscous && s->sim->def.implicit_viscosity;      /* it acts at the particle */
         for (int a = 0; a < 3; a++) {
             force[a] = -mass*accel[a];
-            arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
+            arm[a] = e->foot[a] + (stress ? e->offset[a] : 0) + b->lower[a] - b->centre[a];
         }
-        if (r->viscous && !s->sim->def.implicit_viscosity) turning_traction(s, l, turning);
+        if (r->viscous && !stress) turning_traction(s, l, turning);
         float capillary = f->capillary ? f->capillary[l->particle] : 0;
         float pressure = r->known ? 0 : f->pressure[l->particle];
         double push = r->viscous ? 0 : 2*s->smoothing.volume*(pressure - capillary);

@@ -297,13 +297,14 @@ double tobi_couple_compliance(const tobi_system *s)
     return most;
 }
 
-/* The two layers of particles at a no-slip surface of area S brake a body at some 4 mu S/(d m); its turns
-   have a smaller inertia: three times that, as those of a ball. */
+/* Explicit friction: the two layers of particles at a no-slip surface of area S brake a body at some
+   4 mu S/(d m); its turns have a smaller inertia: three times that, as those of a ball. */
 double tobi_couple_dt(const tobi_system *s)
 {
     double viscosity = 0, dt = INFINITY;
+    const int explicit = !s->sim->def.implicit_viscosity;
     for (int f = 0; f < s->fluid_count; f++) viscosity = fmax(viscosity, s->fluid[f].viscosity);
-    for (int k = 0; k < s->sim->body_count; k++) {
+    for (int k = 0; k < s->sim->body_count && explicit; k++) {
         const tobi_body *b = &s->sim->bodies[k];
         if (!moves(b) || b->friction != TOBI_NO_SLIP || !(viscosity > 0)) continue;
         dt = fmin(dt, 0.8*b->rigid.mass*s->smoothing.spacing/(12*viscosity*b->rest.area));

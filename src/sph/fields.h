@@ -51,7 +51,7 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
       "normal of the interface, out of the fluid; w = curvature, 1/m") \
     X(tobi_float4, TOBI_F32, 4, viscous_velocity, SPH_VISCOUS, SPH_NEED_IMPLICIT, "m/s", \
       "that viscosity leaves, while it is solved for") \
-    X(tobi_float4, TOBI_F32, 4, viscous_expected, SPH_VISCOUS, SPH_NEED_IMPLICIT, "m/s", \
+    X(tobi_float4, TOBI_F32, 4, viscous_expected, SPH_VISCOUS | SPH_TAIT, SPH_NEED_IMPLICIT, "m/s", \
       "what gravity and pressure are expected to add") \
     X(tobi_float4, TOBI_F32, 4, viscous_residual, SPH_VISCOUS, SPH_NEED_IMPLICIT, "kg/m2/s", \
       "of its equation") \

@@ -21,14 +21,6 @@ static void interpolate(const tobi_body *b, const tobi_boundary_entry *e, const 
     }
 }
 
-void isph_body_velocity(const tobi_body *b, const double place[3], const double u[6], double out[3])
-{
-    double arm[3];
-    for (int a = 0; a < 3; a++) arm[a] = place[a] + b->lower[a] - b->centre[a];
-    vec3_cross(out, u + 3, arm);
-    for (int a = 0; a < 3; a++) out[a] += u[a];
-}
-
 /* The normal of the surface that the kernel sees: it turns steadily where the closest facet changes at once,
    else forces on round bodies jump with every facet that a particle passes. */
 static void find_normal(const tobi_boundary_link *link, const tobi_boundary_entry *e,
@@ -54,7 +46,7 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *l
     double before[3];
     interpolate(b, e, (const double (*)[3])b->vertex_velocity, m.velocity);
     double flow[3] = { 0 };
-    if (b->rigid.kind != TOBI_PRESCRIBED) isph_body_velocity(b, e->foot, b->rigid.before, before);
+    if (b->rigid.kind != TOBI_PRESCRIBED) tobi_body_carry(b, e->foot, b->rigid.before, before);
     else interpolate(b, e, (const double (*)[3])b->vertex_before, before);
     if (b->swimmer) interpolate(b, e, (const double (*)[3])b->vertex_before, flow);
     for (int a = 0; a < 3; a++) m.velocity_change[a] = m.velocity[a] - before[a] - flow[a];
@@ -194,7 +186,7 @@ static void accelerate(const void *view, int64_t begin, int64_t end)
             isph_mirror *m = &all->m->mirror[at];
             const double place[3] = { x->x - m->offset[0], x->y - m->offset[1], x->z - m->offset[2] };
             double u[3];
-            isph_body_velocity(b, at == k ? e->foot : place, n->answer[n->link[k].body], u);
+            tobi_body_carry(b, at == k ? e->foot : place, n->answer[n->link[k].body], u);
             for (int a = 0; a < 3; a++) {
                 m->velocity[a] += all->dt*u[a];
                 m->velocity_change[a] += all->dt*u[a];

@@ -10,5 +10,3 @@ void isph_bodies_remove_hydrostatic(tobi_system *s);
 void isph_bodies_accelerate(isph_solver *m, tobi_system *s, double dt);
 /* The images as their mirrors move now: after changes of those. */
 void isph_bodies_refresh_images(isph_solver *m);
-/* m/s: of a place, m from the lower corner of the box, by the velocities u of a body, about its centre. */
-void isph_body_velocity(const struct tobi_body *b, const double place[3], const double u[6], double out[3]);

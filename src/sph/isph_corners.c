@@ -133,7 +133,7 @@ static void set_velocities(const corner_look *l, const corner_face *f, isph_mirr
     const tobi_body *b = l->b;
     double place[3], before[3] = { 0 };
     vec3_sub(place, l->x, out->offset);
-    if (b->rigid.kind != TOBI_PRESCRIBED) isph_body_velocity(b, place, b->rigid.before, before);
+    if (b->rigid.kind != TOBI_PRESCRIBED) tobi_body_carry(b, place, b->rigid.before, before);
     for (int a = 0; a < 3; a++) {
         out->velocity[a] = b->point_velocity[f->point][a];
         if (b->swimmer || b->motion) before[a] += b->point_before[f->point][a];

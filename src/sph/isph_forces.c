@@ -6,6 +6,7 @@
 #include "sph/boundary.h"
 #include "sph/isph_forces.h"
 #include "sph/state.h"
+#include "geom/matrix6.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <string.h>
@@ -306,31 +307,6 @@ static void find_added_mass(isph_solver *m, tobi_system *s, int k)
     }
 }
 
-/* out = x^-1; x is overwritten. Its pivots are 1 or more: 1 + M^-1 K with K >= 0. */
-static void invert(double x[6][6], double out[6][6])
-{
-    for (int i = 0; i < 6; i++)
-        for (int j = 0; j < 6; j++) out[i][j] = i == j;
-    for (int i = 0; i < 6; i++)
-        for (int j = 0; j < 6; j++) {
-            const double share = x[j][i]/x[i][i];
-            for (int k = 0; k < 6 && j != i; k++) {
-                x[j][k] -= share*x[i][k];
-                out[j][k] -= share*out[i][k];
-            }
-        }
-    for (int i = 0; i < 6; i++)
-        for (int k = 0; k < 6; k++) out[i][k] /= x[i][i];
-}
-
-static void multiply(const double x[6][6], double y[6])
-{
-    double out[6] = { 0 };
-    for (int i = 0; i < 6; i++)
-        for (int j = 0; j < 6; j++) out[i] += x[i][j]*y[j];
-    memcpy(y, out, sizeof out);
-}
-
 /* added_mass_factor = (1 + M^-1 K)^-1. */
 static void find_added_mass_factor(const tobi_rigid *r, isph_body *b)
 {
@@ -341,7 +317,7 @@ static void find_added_mass_factor(const tobi_rigid *r, isph_body *b)
         tobi_rigid_answer(r, column, moved);
         for (int i = 0; i < 6; i++) x[i][j] = moved[i] + (i == j);
     }
-    invert(x, b->added_mass_factor);
+    matrix6_invert(x, b->added_mass_factor);
 }
 
 static void find_mobility(const tobi_rigid *r, isph_body *b)
@@ -350,7 +326,7 @@ static void find_mobility(const tobi_rigid *r, isph_body *b)
         double force[6] = { 0 }, moved[6];
         force[j] = 1;
         tobi_rigid_answer(r, force, moved);
-        multiply((const double (*)[6])b->added_mass_factor, moved);
+        matrix6_multiply((const double (*)[6])b->added_mass_factor, moved);
         for (int i = 0; i < 6; i++) b->mobility[i][j] = moved[i];
     }
 }
@@ -372,7 +348,7 @@ static void predict(isph_solver *m, tobi_system *s, int k)
         f[a] = now + answer[a] - r->before[a];
         b->explicit_change[a] = r->before[a] - now;
     }
-    multiply((const double (*)[6])b->added_mass_factor, f);
+    matrix6_multiply((const double (*)[6])b->added_mass_factor, f);
     for (int a = 0; a < 6; a++) answer[a] = b->explicit_change[a] += f[a];
 }
 
@@ -400,7 +376,7 @@ static void answer(isph_solver *m, tobi_system *s, const double *pressure)
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_couple_answer(s, k, sph_of(s)->links.total[k]);
         if (s->sim->bodies[k].rigid.kind != TOBI_PRESCRIBED)
-            multiply((const double (*)[6])m->body[k].added_mass_factor, sph_of(s)->links.answer[k]);
+            matrix6_multiply((const double (*)[6])m->body[k].added_mass_factor, sph_of(s)->links.answer[k]);
     }
     tobi_couple_obey(s, 0);
 }
@@ -463,7 +439,7 @@ static void trace_answer(const void *view, int64_t begin, int64_t end, double *t
         double moved[6];
         if (m->system->sim->bodies[v->link[k].body].rigid.kind == TOBI_PRESCRIBED) continue;
         memcpy(moved, c, sizeof moved);
-        multiply((const double (*)[6])m->body[v->link[k].body].mobility, moved);
+        matrix6_multiply((const double (*)[6])m->body[v->link[k].body].mobility, moved);
         for (int a = 0; a < 6; a++)
             totals[0] += v->density/v->volume*v->inverse_diagonal[v->link[k].particle]*c[a]*moved[a];
     }
@@ -508,7 +484,7 @@ static void remove_added_mass(const isph_solver *m, const tobi_system *s, int k,
         const double now = i < 3 ? r->velocity[i] : r->angular_velocity[i - 3];
         a[i] = (now + b->explicit_change[i] - r->before[i])/s->dt + sph_of(s)->links.answer[k][i];
     }
-    multiply((const double (*)[6])b->added_mass, a);
+    matrix6_multiply((const double (*)[6])b->added_mass, a);
     for (int i = 0; i < 6; i++) f[i] -= a[i];
 }
 

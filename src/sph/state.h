@@ -23,6 +23,15 @@ typedef struct sph_state {
 
 static inline sph_state *sph_of(const tobi_system *s) { return s->state; }
 
+/* In a range over entries: runs over them; those of one particle are handled together, where the first of
+   them stands. */
+#define SPH_FOR_NEAR_PARTICLES(s, k, i, e)                                                                 \
+    for (int64_t k = begin; k < end; k++)                                                                  \
+        for (int64_t i = sph_of(s)->links.link[k].particle,                                                \
+                     once = sph_fields_of(&s->particles)->last_link[i] == k; once; once = 0)               \
+            for (const tobi_boundary_entry *e = &sph_of(s)->links.entry[k]; e;                             \
+                 e = tobi_boundary_next(&sph_of(s)->links, e))
+
 extern const tobi_output sph_outputs[];
 unsigned sph_needs(const tobi_system *s, int full);
 /* Pressure, density and sph_outputs of one particle. */

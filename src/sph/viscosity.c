@@ -1,11 +1,11 @@
-/* Implicit viscosity (decision 107): conjugate gradients over the velocities, with the diagonal as
+/* Implicit viscosity (decisions 107, 109): conjugate gradients over the velocities, with the diagonal as
    preconditioner. Drawback: iterations grow as the root of the step over that of explicit viscosity. */
 #include "sph/viscosity.h"
 #include "linear/solve.h"
-#include "sph/boundary.h"
 #include "sph/phases.h"
 #include "sph/stages.h"
 #include "sph/state.h"
+#include "sph/viscous_bodies.h"
 #include <math.h>
 #include <string.h>
 
@@ -39,6 +39,7 @@ static void turn(void *user, double beta)
     const solve *q = user;
     q->v->beta = (float)beta;
     launch(q, q->k->sph_viscous_turn, NULL);
+    sph_viscous_bodies_turn(q->s, beta);
 }
 
 static double apply(void *user)
@@ -48,15 +49,16 @@ static double apply(void *user)
     q->v->viscous.operand = q->v->viscous.direction;
     launch(q, q->k->sph_viscous_spin, NULL);
     launch(q, q->k->sph_viscous_product, NULL);
-    if (q->s->sim->body_count > 0) tobi_boundary_add_viscous_product(q->s);
+    const double bodies = sph_viscous_bodies_apply(q->s);
     launch(q, q->k->sph_viscous_curve, t);
-    return t[0];
+    return t[0] + bodies;
 }
 
 static void keep(solve *q, const double *t)
 {
     q->rz = t[0];
     q->residual = t[1];
+    sph_viscous_bodies_measure(q->s, &q->rz, &q->residual);
 }
 
 static void advance(void *user, double alpha)
@@ -65,17 +67,18 @@ static void advance(void *user, double alpha)
     double t[TOBI_TOTALS];
     q->v->alpha = (float)alpha;
     launch(q, q->k->sph_viscous_advance, t);
+    sph_viscous_bodies_advance(q->s, alpha);
     keep(q, t);
     q->iterations++;
 }
 
 /* The true residual, and squares of it and of the velocity before viscosity. */
-static void find_residual(solve *q, double *t)
+static void find_residual(solve *q, double *t, int first)
 {
     q->v->viscous.operand = q->v->viscous.x;
     launch(q, q->k->sph_viscous_spin, NULL);
     launch(q, q->k->sph_viscous_rows, NULL);
-    if (q->s->sim->body_count > 0) tobi_boundary_add_viscous_rows(q->s);
+    sph_viscous_bodies_residual(q->s, first);
     launch(q, q->k->sph_viscous_measure, t);
     keep(q, t);
 }
@@ -125,15 +128,34 @@ void sph_viscosity_solve(tobi_system *s, sph_view *v, const sph_kernels *k, void
     if (expect) expect(s);
     else expect_pressure(s, v, k);
     launch(&q, k->sph_viscous_expect, NULL);
-    find_residual(&q, t);
-    q.goal = fmin(MOST*MOST*t[2], fmax(TOLERANCE*TOLERANCE*t[1], LEAST*LEAST*t[2]));
+    sph_viscous_bodies_begin(s);
+    find_residual(&q, t, 1);
+    q.goal = fmin(MOST*MOST*t[2], fmax(TOLERANCE*TOLERANCE*q.residual, LEAST*LEAST*t[2]));
     tobi_cg_iterate(&steps, &q);
-    find_residual(&q, t);
+    find_residual(&q, t, 0);
     launch(&q, k->sph_viscous_finish, t);
     for (int a = 0; a < 3; a++) sph_of(s)->friction[a] = t[a]/s->dt;
-    if (s->sim->body_count > 0) tobi_boundary_keep_friction(s);
+    sph_viscous_bodies_keep(s);
     s->info.viscosity_iterations = q.iterations;
     s->info.viscosity_failed = !(q.residual <= 4*q.goal);      /* the true residual, in float */
+}
+
+typedef struct adding { const tobi_system *s; float share; } adding;
+
+static void add_expected(const void *view, int64_t begin, int64_t end)
+{
+    const adding *q = view;
+    const sph_fields *f = sph_fields_of(&q->s->particles);
+    for (int64_t i = begin; i < end; i++)
+        for (int c = 0; c < 3; c++)
+            (&q->s->particles.velocity[i].x)[c] += q->share*(&f->viscous_expected[i].x)[c];
+}
+
+void sph_viscosity_expect(tobi_system *s, double share)
+{
+    const adding q = {s, (float)share};
+    if (s->sim->def.implicit_viscosity)
+        tobi_loop(s->sim->exec.threads, s->particles.count, 0, add_expected, &q);
 }
 
 void sph_viscosity_add(tobi_system *s, sph_view *v, const sph_kernels *k)
@@ -143,7 +165,8 @@ void sph_viscosity_add(tobi_system *s, sph_view *v, const sph_kernels *k)
     if (!v->implicit) return;
     copy_velocities(s, v->viscous.expected);
     launch(&q, k->sph_viscous_expect, NULL);
-    find_residual(&q, t);
+    sph_viscous_bodies_rest(s);
+    find_residual(&q, t, 0);
     launch(&q, k->sph_viscous_finish, t);
 }
 

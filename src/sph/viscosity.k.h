@@ -218,7 +218,12 @@ TOBI_FN void sph_viscous_finish(const sph_view *v, int64_t i, double *totals)
 {
     const tobi_float4 x = v->viscous.x[i];
     float rate[3], drive[3];
-    if (sph_driven(v, i)) return;
+    if (sph_driven(v, i)) {
+        const float given = v->velocity[i].w;
+        v->velocity[i] = sph_viscous_blend(v->velocity[i], -1, v->viscous.expected[i]);
+        v->velocity[i].w = given;
+        return;
+    }
     sph_viscous_planes(v, i, rate, drive);
     for (int c = 0; c < 3; c++)
         totals[c] += (double)v->dt*v->volume*(rate[c]*(&x.x)[c] - drive[c]);

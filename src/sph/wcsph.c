@@ -164,8 +164,10 @@ static void apply_pressure(tobi_system *s, wcsph *m, double *clock)
 {
     double t[TOBI_TOTALS];
     sph_stage(s, &m->view, SPH_TAIT);
+    sph_viscosity_expect(s, 1);       /* the pressure that viscosity has seen: what it did stays with it */
     launch(s, m, m->kernel->sph_carry, NULL);
     launch(s, m, m->kernel->sph_tait, t);
+    sph_viscosity_expect(s, -1);
     s->info.divergence_mean = t[0]/(double)s->particles.count;
     s->info.divergence_max = t[6];
     s->info.density_converged = s->info.divergence_converged = 1;      /* there is no solver */

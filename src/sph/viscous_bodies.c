@@ -1,0 +1,275 @@
+/* Friction of bodies in the solve of implicit viscosity, and the bodies' answer to it (decision 109): the
+   velocities of those that move by forces are unknowns beside the particles'. Drawback: six more sums over
+   what particles see of bodies in each step, for the friction of each body with itself. */
+#include "sph/viscous_bodies.h"
+#include "sph/boundary.h"
+#include "sph/state.h"
+#include "geom/matrix6.h"
+#include "geom/vec3.h"
+
+static int moves(const tobi_system *s, int body)
+{
+    return s->sim->bodies[body].rigid.kind != TOBI_PRESCRIBED;
+}
+
+static double dot6(const double a[6], const double b[6])
+{
+    return vec3_dot(a, b) + vec3_dot(a + 3, b + 3);
+}
+
+/* Where a particle is, from the lower corner of the box. */
+static void find_place(const tobi_boundary_entry *e, double place[3])
+{
+    vec3_add_scaled(place, e->foot, 1, e->offset);
+}
+
+/* Friction of one entry on a particle at velocity w, eq. (3), m/s2. moving: 1 the body goes as it does and
+   its answer comes to that, 0 the answer is all. */
+static void entry_friction(const tobi_system *s, int64_t i, const tobi_boundary_entry *e, tobi_float4 w,
+                           int moving, double out[3])
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    const int body = n->link[e - n->entry].body;
+    const tobi_fluid *f = &s->fluid[s->particles.fluid[i]];
+    const double u[3] = {w.x, w.y, w.z};
+    double place[3], turn[3];
+    find_place(e, place);
+    tobi_body_carry(&s->sim->bodies[body], place, n->answer[body], out);
+    vec3_cross(turn, s->sim->bodies[body].info.angular_velocity, e->offset);
+    for (int c = 0; c < 3; c++) {
+        const double own = moving ? e->drag_velocity[c] + e->drag*turn[c] : 0;
+        out[c] = f->viscosity/f->density*(own + e->drag*(out[c] - u[c]));
+    }
+    const double normal = vec3_dot(out, e->foot_normal);
+    for (int c = 0; c < 3; c++) out[c] -= normal*e->foot_normal[c];
+}
+
+static void add_rows(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    SPH_FOR_NEAR_PARTICLES(s, k, i, e) {
+        const tobi_fluid *liquid = &s->fluid[s->particles.fluid[i]];
+        float *r = &f->viscous_residual[i].x, *inverse = &f->viscous_inverse[i].x;
+        double add[3];
+        entry_friction(s, i, e, f->viscous_velocity[i], 1, add);
+        for (int c = 0; c < 3 && inverse[c] > 0; c++) {
+            const double n = e->foot_normal[c];
+            r[c] += (float)(s->dt*liquid->density*add[c]);
+            inverse[c] = (float)(1/(1/inverse[c] + s->dt*liquid->viscosity*e->drag*(1 - n*n)));
+        }
+    }
+}
+
+static void add_product(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    SPH_FOR_NEAR_PARTICLES(s, k, i, e) {
+        const double scale = s->dt*s->fluid[s->particles.fluid[i]].density;
+        float *product = &f->viscous_product[i].x;
+        double add[3];
+        entry_friction(s, i, e, f->viscous_direction[i], 0, add);
+        for (int c = 0; c < 3 && f->viscous_inverse[i].x > 0; c++) product[c] -= (float)(scale*add[c]);
+    }
+}
+
+static void keep_friction(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    SPH_FOR_NEAR_PARTICLES(s, k, i, e) {
+        tobi_boundary_entry *own = (tobi_boundary_entry *)e;
+        if (f->viscous_inverse[i].x > 0) entry_friction(s, i, e, f->viscous_velocity[i], 1, own->friction);
+    }
+}
+
+/* Over the entries of one body: impulse and angular impulse of friction on the particles in the step. w:
+   their velocities; NULL: all rest. */
+typedef struct friction { const tobi_system *s; const tobi_float4 *w; int moving; } friction;
+
+static void sum_friction(const void *view, int64_t begin, int64_t end, double *t)
+{
+    const friction *q = view;
+    const tobi_system *s = q->s;
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    const tobi_body *b = &s->sim->bodies[n->link[begin].body];
+    if (!moves(s, n->link[begin].body)) return;
+    for (int64_t k = begin; k < end; k++) {
+        const int64_t i = n->link[k].particle;
+        double force[3], place[3], arm[3], torque[3];
+        if (!(sph_fields_of(&s->particles)->viscous_inverse[i].x > 0)) continue;
+        entry_friction(s, i, &n->entry[k], q->w ? q->w[i] : (tobi_float4){0, 0, 0, 0}, q->moving, force);
+        find_place(&n->entry[k], place);
+        for (int a = 0; a < 3; a++) {
+            force[a] *= s->dt*s->fluid[s->particles.fluid[i]].density;
+            arm[a] = place[a] + b->lower[a] - b->centre[a];
+        }
+        vec3_cross(torque, arm, force);
+        for (int a = 0; a < 3; a++) {
+            t[a] += force[a];
+            t[3 + a] += torque[a];
+        }
+    }
+}
+
+/* Into links.total of each body. */
+static void sum(tobi_system *s, const tobi_float4 *w, int moving)
+{
+    const friction q = {s, w, moving};
+    tobi_boundary_sum(s, TOBI_HOST(sum_friction, 6, 0), &q, 1);
+}
+
+static void show_velocities(const tobi_system *s)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    for (int k = 0; k < s->sim->body_count; k++)
+        for (int a = 0; a < 6; a++) n->answer[k][a] = n->viscous[k].expected[a] + n->viscous[k].change[a];
+}
+
+void sph_viscous_bodies_begin(tobi_system *s)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    for (int k = 0; k < s->sim->body_count; k++) {
+        const tobi_body_info *last = &s->sim->bodies[k].info;
+        double f[6];
+        memcpy(f, last->pressure_force, sizeof last->pressure_force);
+        memcpy(f + 3, last->pressure_torque, sizeof last->pressure_torque);
+        tobi_couple_predict(s, k, f);
+    }
+    tobi_couple_join(s);
+    tobi_couple_obey(s, 1);
+    for (int k = 0; k < s->sim->body_count; k++) {
+        n->viscous[k] = (sph_viscous_body){ .drag = {{0}} };
+        memcpy(n->viscous[k].expected, n->answer[k], sizeof n->viscous[k].expected);
+    }
+}
+
+void sph_viscous_bodies_rest(tobi_system *s)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    for (int k = 0; k < s->sim->body_count; k++) n->viscous[k] = (sph_viscous_body){ .drag = {{0}} };
+}
+
+/* W r, eq. (5), into links.answer of each body. */
+static void answer_alone(tobi_system *s, int body, const double r[6])
+{
+    double impulse[6];
+    for (int a = 0; a < 6; a++) impulse[a] = s->smoothing.volume*r[a];
+    tobi_couple_answer(s, body, impulse);
+}
+
+static void find_drag(tobi_system *s)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    for (int j = 0; j < 6; j++) {
+        for (int k = 0; k < s->sim->body_count; k++)
+            for (int a = 0; a < 6; a++) n->answer[k][a] = a == j;
+        sum(s, NULL, 0);
+        for (int k = 0; k < s->sim->body_count; k++)
+            for (int a = 0; a < 6; a++) n->viscous[k].drag[a][j] = n->total[k][a];
+    }
+}
+
+static void find_factors(tobi_system *s)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    for (int k = 0; k < s->sim->body_count; k++) {
+        sph_viscous_body *b = &n->viscous[k];
+        double x[6][6];
+        for (int j = 0; j < 6; j++) {
+            double column[6];
+            for (int i = 0; i < 6; i++) column[i] = b->drag[i][j];
+            answer_alone(s, k, column);
+            for (int i = 0; i < 6; i++) x[i][j] = n->answer[k][i] + (i == j);
+        }
+        matrix6_invert(x, b->factor);
+    }
+}
+
+void sph_viscous_bodies_residual(tobi_system *s, int first)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    if (s->sim->body_count == 0) return;
+    show_velocities(s);
+    tobi_boundary_visit_entries(s, add_rows);
+    if (!tobi_couple_any(s)) return;
+    sum(s, sph_fields_of(&s->particles)->viscous_velocity, 1);
+    for (int k = 0; k < s->sim->body_count; k++)
+        for (int a = 0; a < 6; a++) n->viscous[k].residual[a] = -n->viscous[k].impulse[a] - n->total[k][a];
+    if (!first) return;
+    find_drag(s);
+    find_factors(s);
+}
+
+/* Bodies alone: P = (W^-1 + S)^-1 = (1 + W S)^-1 W, and W^-1 P r = r - S P r. Joined ones: P = W, which
+   joints make singular; so impulses are kept beside velocities. */
+void sph_viscous_bodies_measure(tobi_system *s, double *rz, double *square)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    if (!tobi_couple_any(s)) return;
+    for (int k = 0; k < s->sim->body_count; k++) answer_alone(s, k, n->viscous[k].residual);
+    tobi_couple_obey(s, 0);
+    for (int k = 0; k < s->sim->body_count; k++) {
+        sph_viscous_body *b = &n->viscous[k];
+        *square += dot6(b->residual, n->answer[k])/s->fluid[0].density;
+        memcpy(b->z, n->answer[k], sizeof b->z);
+        memcpy(b->z_impulse, b->residual, sizeof b->z_impulse);
+        if (tobi_constraints_slot(&s->sim->constraints, k) < 0) {
+            double braked[6];
+            matrix6_multiply((const double (*)[6])b->factor, b->z);
+            memcpy(braked, b->z, sizeof braked);
+            matrix6_multiply((const double (*)[6])b->drag, braked);
+            for (int a = 0; a < 6; a++) b->z_impulse[a] -= braked[a];
+        }
+        *rz += dot6(b->residual, b->z);
+    }
+}
+
+void sph_viscous_bodies_turn(tobi_system *s, double beta)
+{
+    for (int k = 0; k < s->sim->body_count; k++) {
+        sph_viscous_body *b = &sph_of(s)->links.viscous[k];
+        for (int a = 0; a < 6; a++) {
+            b->direction[a] = b->z[a] + beta*b->direction[a];
+            b->direction_impulse[a] = b->z_impulse[a] + beta*b->direction_impulse[a];
+        }
+    }
+}
+
+double sph_viscous_bodies_apply(tobi_system *s)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    double curve = 0;
+    if (s->sim->body_count == 0) return 0;
+    for (int k = 0; k < s->sim->body_count; k++)
+        memcpy(n->answer[k], n->viscous[k].direction, sizeof n->answer[k]);
+    tobi_boundary_visit_entries(s, add_product);
+    if (!tobi_couple_any(s)) return 0;
+    sum(s, sph_fields_of(&s->particles)->viscous_direction, 0);
+    for (int k = 0; k < s->sim->body_count; k++) {
+        sph_viscous_body *b = &n->viscous[k];
+        for (int a = 0; a < 6; a++) b->product[a] = b->direction_impulse[a] + n->total[k][a];
+        curve += dot6(b->direction, b->product);
+    }
+    return curve;
+}
+
+void sph_viscous_bodies_advance(tobi_system *s, double alpha)
+{
+    for (int k = 0; k < s->sim->body_count; k++) {
+        sph_viscous_body *b = &sph_of(s)->links.viscous[k];
+        for (int a = 0; a < 6; a++) {
+            b->change[a] += alpha*b->direction[a];
+            b->impulse[a] += alpha*b->direction_impulse[a];
+            b->residual[a] -= alpha*b->product[a];
+        }
+    }
+}
+
+void sph_viscous_bodies_keep(tobi_system *s)
+{
+    if (s->sim->body_count == 0) return;
+    show_velocities(s);
+    tobi_boundary_visit_entries(s, keep_friction);
+}
