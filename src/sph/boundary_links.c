@@ -256,6 +256,7 @@ static void add_forces(const void *view, int64_t begin, int64_t end)
         tobi_boundary_entry *own = (tobi_boundary_entry *)e;   /* kept for the reaction */
         memcpy(own->hydrostatic, hydrostatic, sizeof hydrostatic);
         memcpy(own->friction, drag, sizeof drag);
+        memset(own->couple, 0, sizeof own->couple);
         v->x += (float)(s->dt*(hydrostatic[0] + drag[0]));
         v->y += (float)(s->dt*(hydrostatic[1] + drag[1]));
         v->z += (float)(s->dt*(hydrostatic[2] + drag[2]));

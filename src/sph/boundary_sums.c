@@ -92,7 +92,7 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
             int p = (a + 1)%3, q = (a + 2)%3;
             t[a] += force[a] + push*l->gradient[a];
             t[3 + a] += arm[p]*(force[q] + turning[q]) - arm[q]*(force[p] + turning[p]) +
-                        push*l->torque_arm[a];
+                        push*l->torque_arm[a] + (stress ? mass*e->couple[a] : 0);
         }
     }
 }

@@ -23,6 +23,7 @@ typedef struct tobi_boundary_entry {
     double hidden;            /* sum V F r^2 over cut pairs, by the dimension; in a particle's last  */
     double hydrostatic[3];    /* acceleration by the hydrostatic part of the mirrored pressure    */
     double friction[3];       /* acceleration by no-slip friction in this step                    */
+    double couple[3];         /* on the body, beside it, per mass, m2/s2: of implicit viscosity   */
     double drag;              /* no-slip friction rate, 1/m2: a = -nu drag (v - v_body)_t         */
     double drag_velocity[3];  /* drag times mean body velocity, 1/(m s)                           */
     double foot[3];           /* closest point on the body, relative to the box                   */

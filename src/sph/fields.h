@@ -61,6 +61,10 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
       "A q") \
     X(tobi_float4, TOBI_F32, 4, viscous_inverse, SPH_VISCOUS, SPH_NEED_IMPLICIT, "m3/kg", \
       "of the diagonal") \
+    X(tobi_float4, TOBI_F32, 4, viscous_turning, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1", \
+      "J of viscosity.md, eq. (2): xx, yy, zz, xy") \
+    X(tobi_float4, TOBI_F32, 4, viscous_lack, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1", \
+      "J: yz, zx; z: r of eq. (3b); w: 1/sum of V F x^2") \
     X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "at a free surface 1; sparse: 2") \
     X(tobi_float4, TOBI_F32, 4, held,         TOBI_SCRATCH, SPH_NEED_OPENINGS, "m/s", \
       "velocity in a buffer; w: 1 + number of an inlet, < 0 of an outlet, 0: none") \

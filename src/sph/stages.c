@@ -59,7 +59,8 @@ static void bind_stage(sph_view *v, const sph_fields *f)
     v->delta = f->delta;
     v->moment = f->moment; v->target_divergence = f->target_divergence;
     v->viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
-                                    f->viscous_direction, f->viscous_product, f->viscous_inverse, NULL};
+                                    f->viscous_direction, f->viscous_product, f->viscous_inverse,
+                                    f->viscous_turning, f->viscous_lack, NULL, 0};
 }
 
 void sph_stage(tobi_system *s, sph_view *v, int stage)

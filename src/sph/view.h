@@ -17,8 +17,9 @@ enum { SPH_SPARSE = 2 };
 /* Of implicit viscosity, viscosity.k.h; NULL without it. */
 typedef struct sph_viscous_fields {
     tobi_float4 *TOBI_RESTRICT x, *TOBI_RESTRICT expected, *TOBI_RESTRICT residual, *TOBI_RESTRICT direction,
-                *TOBI_RESTRICT product, *TOBI_RESTRICT inverse;
+                *TOBI_RESTRICT product, *TOBI_RESTRICT inverse, *TOBI_RESTRICT turning, *TOBI_RESTRICT lack;
     const tobi_float4 *operand;      /* x or direction: what the sums are over     */
+    float moving;                    /* 1: walls move as they do, 0: they rest     */
 } sph_viscous_fields;
 
 typedef struct sph_view {

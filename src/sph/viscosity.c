@@ -42,12 +42,27 @@ static void turn(void *user, double beta)
     sph_viscous_bodies_turn(q->s, beta);
 }
 
+/* How neighbours and walls lie does not change in a solve. */
+static void find_shapes(const solve *q)
+{
+    launch(q, q->k->sph_viscous_shape, NULL);
+    sph_viscous_bodies_shape(q->s);
+    launch(q, q->k->sph_viscous_close, NULL);
+}
+
+static void find_spins(const solve *q, const tobi_float4 *of, int moving)
+{
+    q->v->viscous.operand = of;
+    q->v->viscous.moving = (float)moving;
+    launch(q, q->k->sph_viscous_spin, NULL);
+    sph_viscous_bodies_spin(q->s, q->v, moving);
+}
+
 static double apply(void *user)
 {
     const solve *q = user;
     double t[TOBI_TOTALS];
-    q->v->viscous.operand = q->v->viscous.direction;
-    launch(q, q->k->sph_viscous_spin, NULL);
+    find_spins(q, q->v->viscous.direction, 0);
     launch(q, q->k->sph_viscous_product, NULL);
     const double bodies = sph_viscous_bodies_apply(q->s);
     launch(q, q->k->sph_viscous_curve, t);
@@ -75,8 +90,8 @@ static void advance(void *user, double alpha)
 /* The true residual, and squares of it and of the velocity before viscosity. */
 static void find_residual(solve *q, double *t, int first)
 {
-    q->v->viscous.operand = q->v->viscous.x;
-    launch(q, q->k->sph_viscous_spin, NULL);
+    if (first) find_shapes(q);
+    find_spins(q, q->v->viscous.x, 1);
     launch(q, q->k->sph_viscous_rows, NULL);
     sph_viscous_bodies_residual(q->s, first);
     launch(q, q->k->sph_viscous_measure, t);
@@ -166,7 +181,7 @@ void sph_viscosity_add(tobi_system *s, sph_view *v, const sph_kernels *k)
     copy_velocities(s, v->viscous.expected);
     launch(&q, k->sph_viscous_expect, NULL);
     sph_viscous_bodies_rest(s);
-    find_residual(&q, t, 0);
+    find_residual(&q, t, 1);
     launch(&q, k->sph_viscous_finish, t);
 }
 

@@ -25,19 +25,86 @@ TOBI_FN lane sph_viscous_own(const sph_view *v, int64_t i)
     return lane_set(v->phase ? v->phase[i].y : v->dynamic);
 }
 
-/* accel = the rotation that takes most from the differences of velocity around i: the Omega of the least sum
-   of 4 V F mu_ij (w_j - w_i - Omega x x_ji)^2, eq. (2); w = the expansion that does so, eq. (2b). */
-typedef struct sph_viscous_spin_acc {
-    lane wx, wy, wz, x, y, z, along, mu;
-    sph_moments m;
-} sph_viscous_spin_acc;
+/* 1/(4 mu/V): sums over 4 F mu_ij are of sums over V F times that. */
+TOBI_FN float sph_viscous_share(const sph_view *v, int64_t i)
+{
+    const float mu = v->phase ? v->phase[i].y : v->dynamic;
+    return mu > 0 ? v->slope/(4*mu) : 0;
+}
+
+/* Distance from a no-slip plane that acts on i, at least a quarter of a spacing; 0: none. */
+TOBI_FN float sph_viscous_reach(const sph_view *v, int plane, int64_t i)
+{
+    const float s = sph_plane_distance(v, plane, i), least = 0.25f*v->spacing;
+    if (!v->plane[plane].no_slip || s >= v->h) return 0;
+    return s > least ? s : least;
+}
+
+/* turning = J of the pairs; lack.w = 1/sum of V F x^2. Meanwhile direction (xx, yy, zz) and product (xy, yz,
+   zx) hold N, the sum of sigma s n n over plane walls; bodies add theirs. */
+typedef struct sph_viscous_shape_acc { lane mu; sph_moments m; } sph_viscous_shape_acc;
+TOBI_FN void sph_viscous_shape_start(const sph_view *v, int64_t i, sph_viscous_shape_acc *a)
+{
+    a->mu = sph_viscous_own(v, i);
+    sph_moments_clear(&a->m);
+}
+TOBI_FN void sph_viscous_shape_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
+                                    sph_viscous_shape_acc *a, const int shape)
+{
+    (void)i;
+    sph_moments_add(&a->m, sph_viscous_weight(v, n, a->mu, shape), n);
+}
+TOBI_FN void sph_viscous_shape_finish(const sph_view *v, int64_t i, sph_viscous_shape_acc *a, double *totals)
+{
+    const sph_matrix m = sph_moments_sum(&a->m, sph_viscous_share(v, i));
+    const float trace = m.xx + m.yy + m.zz;
+    float along[3] = {0, 0, 0};
+    (void)totals;
+    for (int p = 0; p < v->plane_count; p++) {
+        const float s = sph_viscous_reach(v, p, i);
+        if (s > 0) along[v->plane[p].axis] += s*sph_plane_value(v, v->table->sigma, s);
+    }
+    v->viscous.turning[i] = (tobi_float4){m.yy + m.zz, m.zz + m.xx, m.xx + m.yy, -m.xy};
+    v->viscous.lack[i] = (tobi_float4){-m.yz, -m.zx, 0, trace > 0 ? 1/trace : 0};
+    v->viscous.direction[i] = (tobi_float4){along[0], along[1], along[2], 0};
+    v->viscous.product[i] = (tobi_float4){0, 0, 0, 0};
+}
+
+/* lack.z = r, eq. (3b); turning = J with what walls add. */
+TOBI_FN void sph_viscous_close(const sph_view *v, int64_t i, double *totals)
+{
+    const tobi_float4 j = v->viscous.turning[i], l = v->viscous.lack[i], n = v->viscous.direction[i],
+                      o = v->viscous.product[i];
+    const float all = 0.5f*(j.x + j.y + j.z), walls = n.x + n.y + n.z, share = 1.0f/v->dimension;
+    const float a = n.x - share*walls, b = n.y - share*walls, c = v->dimension > 2 ? n.z - share*walls : 0;
+    const float square = a*a + b*b + c*c + 2*(o.x*o.x + o.y*o.y + o.z*o.z);
+    float lacks = a*(j.x - all) + b*(j.y - all) + c*(j.z - all) + 2*(o.x*j.w + o.y*l.x + o.z*l.y), r = 1;
+    (void)totals;
+    if (square > 1e-4f*walls*walls) r = lacks/square;
+    r = walls > 0 ? fminf(fmaxf(r, 0), 2) : 0;
+    const float wall = r*walls, more = 2e-6f*all;
+    v->viscous.turning[i] = (tobi_float4){j.x + wall - r*n.x + more, j.y + wall - r*n.y + more,
+                                          j.z + wall - r*n.z + more, j.w - r*o.x};
+    v->viscous.lack[i] = (tobi_float4){l.x - r*o.y, l.y - r*o.z, r, l.w};
+}
+
+/* What `turn` is as a rotation around i: J^-1 turn. */
+TOBI_FN tobi_float4 sph_viscous_turned(const sph_view *v, int64_t i, tobi_float4 turn)
+{
+    const tobi_float4 j = v->viscous.turning[i], l = v->viscous.lack[i];
+    const sph_matrix m = {j.x, j.y, j.z, j.w, l.x, l.y};
+    return l.w > 0 ? sph_solve(&m, turn) : (tobi_float4){0, 0, 0, 0};
+}
+
+/* accel = the rotation that takes most from the differences of velocity around i, eq. (2), (3b), but for what
+   bodies add; w = the expansion that does so, eq. (2b). */
+typedef struct sph_viscous_spin_acc { lane wx, wy, wz, x, y, z, along, mu; } sph_viscous_spin_acc;
 TOBI_FN void sph_viscous_spin_start(const sph_view *v, int64_t i, sph_viscous_spin_acc *a)
 {
     const tobi_float4 w = v->viscous.operand[i];
     a->wx = lane_set(w.x); a->wy = lane_set(w.y); a->wz = lane_set(w.z);
     a->x = a->y = a->z = a->along = lane_set(0);
     a->mu = sph_viscous_own(v, i);
-    sph_moments_clear(&a->m);
 }
 TOBI_FN void sph_viscous_spin_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
                                    sph_viscous_spin_acc *a, const int shape)
@@ -49,19 +116,24 @@ TOBI_FN void sph_viscous_spin_pair(const sph_view *v, int64_t i, const tobi_neig
     x = f*(a->wx - x); y = f*(a->wy - y); z = f*(a->wz - z);
     a->x += n->dy*z - n->dz*y; a->y += n->dz*x - n->dx*z; a->z += n->dx*y - n->dy*x;
     a->along += n->dx*x + n->dy*y + n->dz*z;
-    sph_moments_add(&a->m, f, n);
 }
 TOBI_FN void sph_viscous_spin_finish(const sph_view *v, int64_t i, sph_viscous_spin_acc *a, double *totals)
 {
-    const tobi_float4 turn = lane_sum4(a->x, a->y, a->z, a->along);
-    const sph_matrix m = sph_moments_sum(&a->m, 1);
-    const float trace = m.xx + m.yy + m.zz, more = 1e-6f*trace, k = trace > 0 ? 1/trace : 0;
-    const sph_matrix inertia = {k*(m.yy + m.zz + more), k*(m.zz + m.xx + more), k*(m.xx + m.yy + more),
-                                -k*m.xy, -k*m.yz, -k*m.zx};
-    tobi_float4 out = {0, 0, 0, 0};
+    const tobi_float4 sum = lane_sum4(a->x, a->y, a->z, a->along), w = v->viscous.operand[i];
+    const float k = sph_viscous_share(v, i), r = v->viscous.lack[i].z;
+    float turn[3] = {k*sum.x, k*sum.y, k*sum.z};
     (void)totals;
-    if (trace > 0) out = sph_solve(&inertia, (tobi_float4){k*turn.x, k*turn.y, k*turn.z, 0});
-    out.w = k*turn.w;
+    for (int p = 0; p < v->plane_count; p++) {
+        const tobi_plane *wall = &v->plane[p];
+        const float s = sph_viscous_reach(v, p, i);
+        if (!(s > 0)) continue;
+        const float b = r*sph_plane_value(v, v->table->sigma, s)*wall->sign;
+        const int c = wall->axis, d = (c + 1)%3, e = (c + 2)%3;
+        turn[d] += b*(v->viscous.moving*wall->velocity[e] - (&w.x)[e]);
+        turn[e] -= b*(v->viscous.moving*wall->velocity[d] - (&w.x)[d]);
+    }
+    tobi_float4 out = sph_viscous_turned(v, i, (tobi_float4){turn[0], turn[1], turn[2], 0});
+    out.w = k*sum.w*v->viscous.lack[i].w;
     v->accel[i] = out;
 }
 
@@ -91,23 +163,24 @@ TOBI_FN void sph_viscous_add(const sph_view *v, int64_t i, const tobi_neighbors 
     a->all += lane_where_equal(n->index, lane_set_int((int32_t)i), lane_set(0), f);
 }
 
-/* Rate times density at which the no-slip planes brake a particle along each axis, kg/m3/s, eq. (3); and what
-   it is times their velocity. */
-TOBI_FN void sph_viscous_planes(const sph_view *v, int64_t i, float rate[3], float drive[3])
+/* Friction of the no-slip planes at velocity w and the rotation in accel, N/m3, eq. (3); and what it is of
+   -w, kg/m3/s. */
+TOBI_FN void sph_viscous_planes(const sph_view *v, int64_t i, tobi_float4 w, float force[3], float own[3])
 {
-    const float mu = v->phase ? v->phase[i].y : v->dynamic, least = 0.25f*v->spacing;
-    for (int c = 0; c < 3; c++) rate[c] = drive[c] = 0;
+    const float mu = v->phase ? v->phase[i].y : v->dynamic, r = v->viscous.lack[i].z;
+    const float *turn = &v->accel[i].x;
+    for (int c = 0; c < 3; c++) force[c] = own[c] = 0;
     for (int p = 0; p < v->plane_count; p++) {
         const tobi_plane *wall = &v->plane[p];
-        float s = sph_plane_distance(v, p, i);
-        if (!wall->no_slip || s >= v->h) continue;
-        s = s > least ? s : least;
-        const float k = 2*mu*sph_plane_value(v, v->table->sigma, s)/s;
-        for (int c = 0; c < 3; c++) {
-            if (c == wall->axis) continue;
-            rate[c] += k;
-            drive[c] += k*wall->velocity[c];
-        }
+        const float s = sph_viscous_reach(v, p, i);
+        if (!(s > 0)) continue;
+        const float k = 2*mu*sph_plane_value(v, v->table->sigma, s)/s, rate = k*(1 + 0.5f*r);
+        const int c = wall->axis, d = (c + 1)%3, e = (c + 2)%3;
+        const float along = k*r*s*wall->sign;
+        force[d] += rate*(v->viscous.moving*wall->velocity[d] - (&w.x)[d]) + along*turn[e];
+        force[e] += rate*(v->viscous.moving*wall->velocity[e] - (&w.x)[e]) - along*turn[d];
+        own[d] += rate;
+        own[e] += rate;
     }
 }
 
@@ -128,14 +201,13 @@ TOBI_FN void sph_viscous_rows_finish(const sph_view *v, int64_t i, sph_viscous_a
     const tobi_float4 sum = lane_sum4(a->x, a->y, a->z, a->all), u = v->velocity[i],
                       x = v->viscous.operand[i];
     const float rho = 1/v->inverse_density[v->fluid[i]];
-    float rate[3], drive[3];
+    float force[3], own[3];
     tobi_float4 r = {0, 0, 0, 0}, inverse = {0, 0, 0, 0};
     (void)totals;
-    sph_viscous_planes(v, i, rate, drive);
+    sph_viscous_planes(v, i, x, force, own);
     for (int c = 0; c < 3 && !sph_driven(v, i); c++) {
-        const float w = (&x.x)[c];
-        (&r.x)[c] = rho*((&u.x)[c] - w) + v->dt*(v->slope*(&sum.x)[c] + drive[c] - rate[c]*w);
-        (&inverse.x)[c] = 1/(rho + v->dt*(v->slope*sum.w + rate[c]));
+        (&r.x)[c] = rho*((&u.x)[c] - (&x.x)[c]) + v->dt*(v->slope*(&sum.x)[c] + force[c]);
+        (&inverse.x)[c] = 1/(rho + v->dt*(v->slope*sum.w + own[c]));
     }
     v->viscous.residual[i] = r;
     v->viscous.inverse[i] = inverse;
@@ -156,12 +228,12 @@ TOBI_FN void sph_viscous_product_finish(const sph_view *v, int64_t i, sph_viscou
 {
     const tobi_float4 sum = lane_sum4(a->x, a->y, a->z, lane_set(0)), q = v->viscous.operand[i];
     const float rho = 1/v->inverse_density[v->fluid[i]];
-    float rate[3], drive[3];
+    float force[3], own[3];
     tobi_float4 out = {0, 0, 0, 0};
     (void)totals;
-    sph_viscous_planes(v, i, rate, drive);
+    sph_viscous_planes(v, i, q, force, own);
     for (int c = 0; c < 3 && !sph_driven(v, i); c++)
-        (&out.x)[c] = rho*(&q.x)[c] - v->dt*(v->slope*(&sum.x)[c] - rate[c]*(&q.x)[c]);
+        (&out.x)[c] = rho*(&q.x)[c] - v->dt*(v->slope*(&sum.x)[c] + force[c]);
     v->viscous.product[i] = out;
 }
 
@@ -217,16 +289,15 @@ TOBI_FN void sph_viscous_expect(const sph_view *v, int64_t i, double *totals)
 TOBI_FN void sph_viscous_finish(const sph_view *v, int64_t i, double *totals)
 {
     const tobi_float4 x = v->viscous.x[i];
-    float rate[3], drive[3];
+    float force[3], own[3];
     if (sph_driven(v, i)) {
         const float given = v->velocity[i].w;
         v->velocity[i] = sph_viscous_blend(v->velocity[i], -1, v->viscous.expected[i]);
         v->velocity[i].w = given;
         return;
     }
-    sph_viscous_planes(v, i, rate, drive);
-    for (int c = 0; c < 3; c++)
-        totals[c] += (double)v->dt*v->volume*(rate[c]*(&x.x)[c] - drive[c]);
+    sph_viscous_planes(v, i, x, force, own);
+    for (int c = 0; c < 3; c++) totals[c] -= (double)v->dt*v->volume*force[c];
     tobi_float4 u = sph_viscous_blend(x, v->inverse_density[v->fluid[i]], v->viscous.residual[i]);
     u = sph_viscous_blend(u, -1, v->viscous.expected[i]);
     u.w = v->velocity[i].w;

@@ -4,8 +4,11 @@
 #include "sph/viscous_bodies.h"
 #include "sph/boundary.h"
 #include "sph/state.h"
+#include "sph/viscosity.k.h"
 #include "geom/matrix6.h"
 #include "geom/vec3.h"
+#include <math.h>
+#include <string.h>
 
 static int moves(const tobi_system *s, int body)
 {
@@ -23,25 +26,91 @@ static void find_place(const tobi_boundary_entry *e, double place[3])
     vec3_add_scaled(place, e->foot, 1, e->offset);
 }
 
-/* Friction of one entry on a particle at velocity w, eq. (3), m/s2. moving: 1 the body goes as it does and
-   its answer comes to that, 0 the answer is all. */
-static void entry_friction(const tobi_system *s, int64_t i, const tobi_boundary_entry *e, tobi_float4 w,
-                           int moving, double out[3])
+static double reach(const tobi_system *s, const tobi_boundary_entry *e)
+{
+    return fmax(e->distance, 0.25*s->smoothing.spacing);
+}
+
+/* How the wall of an entry goes, continued to the particle: its velocity there, and its rotation. moving: 1
+   the body goes as it does and its answer comes to that, 0 the answer is all. */
+static void find_wall(const tobi_system *s, const tobi_boundary_entry *e, int moving, double velocity[3],
+                      double spin[3])
 {
     const tobi_boundary_links *n = &sph_of(s)->links;
     const int body = n->link[e - n->entry].body;
-    const tobi_fluid *f = &s->fluid[s->particles.fluid[i]];
-    const double u[3] = {w.x, w.y, w.z};
+    const tobi_body *b = &s->sim->bodies[body];
     double place[3], turn[3];
     find_place(e, place);
-    tobi_body_carry(&s->sim->bodies[body], place, n->answer[body], out);
-    vec3_cross(turn, s->sim->bodies[body].info.angular_velocity, e->offset);
+    tobi_body_carry(b, place, n->answer[body], velocity);
+    vec3_cross(turn, b->info.angular_velocity, e->offset);
     for (int c = 0; c < 3; c++) {
-        const double own = moving ? e->drag_velocity[c] + e->drag*turn[c] : 0;
-        out[c] = f->viscosity/f->density*(own + e->drag*(out[c] - u[c]));
+        spin[c] = n->answer[body][3 + c] + (moving ? b->info.angular_velocity[c] : 0);
+        if (moving && e->drag > 0) velocity[c] += e->drag_velocity[c]/e->drag + turn[c];
     }
-    const double normal = vec3_dot(out, e->foot_normal);
-    for (int c = 0; c < 3; c++) out[c] -= normal*e->foot_normal[c];
+}
+
+/* Friction of one entry on particle i at velocity w and rotation `spin` of its neighbourhood, eq. (3): m/s2,
+   and the couple on the body that goes with it, m2/s2; NULL: not asked. */
+static void entry_friction(const tobi_system *s, int64_t i, const tobi_boundary_entry *e, tobi_float4 w,
+                           tobi_float4 spin, int moving, double out[3], double couple[3])
+{
+    const tobi_fluid *f = &s->fluid[s->particles.fluid[i]];
+    const double r = sph_fields_of(&s->particles)->viscous_lack[i].z, *n = e->foot_normal, at = reach(s, e);
+    const double rate = f->viscosity/f->density*e->drag;
+    double slip[3], turn[3], wall[3], swung[3], pulled[3];
+    find_wall(s, e, moving, slip, wall);
+    for (int c = 0; c < 3; c++) {
+        slip[c] -= (&w.x)[c];
+        turn[c] = (&spin.x)[c] - wall[c];
+    }
+    vec3_add_scaled(slip, slip, -vec3_dot(slip, n), n);
+    vec3_add_scaled(turn, turn, -vec3_dot(turn, n), n);
+    vec3_cross(swung, turn, n);
+    vec3_cross(pulled, n, slip);
+    for (int c = 0; c < 3; c++) out[c] = rate*((1 + 0.5*r)*slip[c] + r*at*swung[c]);
+    for (int c = 0; c < 3 && couple; c++) couple[c] = rate*r*at*(pulled[c] + at*turn[c]);
+}
+
+/* sigma s n n of the bodies, for sph_viscous_close. */
+static void add_shapes(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    SPH_FOR_NEAR_PARTICLES(s, k, i, e) {
+        const double *n = e->foot_normal, size = 0.5*e->drag*reach(s, e)*reach(s, e);
+        tobi_float4 *a = &f->viscous_direction[i], *b = &f->viscous_product[i];
+        a->x += (float)(size*n[0]*n[0]); a->y += (float)(size*n[1]*n[1]); a->z += (float)(size*n[2]*n[2]);
+        b->x += (float)(size*n[0]*n[1]); b->y += (float)(size*n[1]*n[2]); b->z += (float)(size*n[2]*n[0]);
+    }
+}
+
+void sph_viscous_bodies_shape(tobi_system *s)
+{
+    if (s->sim->body_count > 0) tobi_boundary_visit_entries(s, add_shapes);
+}
+
+typedef struct spinning { const tobi_system *s; const sph_view *v; int moving; } spinning;
+
+/* What they add to the rotation around the particles, eq. (3b). */
+static void add_spins(const void *view, int64_t begin, int64_t end)
+{
+    const spinning *q = view;
+    const tobi_system *s = q->s;
+    SPH_FOR_NEAR_PARTICLES(s, k, i, e) {
+        const double at = reach(s, e), *n = e->foot_normal;
+        const double b = 0.5*q->v->viscous.lack[i].z*e->drag*at;
+        const float *w = &q->v->viscous.operand[i].x;
+        double slip[3], wall[3], pulled[3];
+        float turn[3];
+        find_wall(s, e, q->moving, slip, wall);
+        for (int c = 0; c < 3; c++) slip[c] -= w[c];
+        vec3_cross(pulled, n, slip);
+        for (int c = 0; c < 3; c++)
+            turn[c] = (float)(b*(at*(wall[c] - vec3_dot(wall, n)*n[c]) - pulled[c]));
+        const tobi_float4 more = sph_viscous_turned(q->v, i, (tobi_float4){turn[0], turn[1], turn[2], 0});
+        tobi_float4 *spin = &q->v->accel[i];
+        spin->x += more.x; spin->y += more.y; spin->z += more.z;
+    }
 }
 
 static void add_rows(const void *view, int64_t begin, int64_t end)
@@ -52,11 +121,12 @@ static void add_rows(const void *view, int64_t begin, int64_t end)
         const tobi_fluid *liquid = &s->fluid[s->particles.fluid[i]];
         float *r = &f->viscous_residual[i].x, *inverse = &f->viscous_inverse[i].x;
         double add[3];
-        entry_friction(s, i, e, f->viscous_velocity[i], 1, add);
+        const double rate = (1 + 0.5*f->viscous_lack[i].z)*liquid->viscosity*e->drag;
+        entry_friction(s, i, e, f->viscous_velocity[i], f->accel[i], 1, add, NULL);
         for (int c = 0; c < 3 && inverse[c] > 0; c++) {
             const double n = e->foot_normal[c];
             r[c] += (float)(s->dt*liquid->density*add[c]);
-            inverse[c] = (float)(1/(1/inverse[c] + s->dt*liquid->viscosity*e->drag*(1 - n*n)));
+            inverse[c] = (float)(1/(1/inverse[c] + s->dt*rate*(1 - n*n)));
         }
     }
 }
@@ -69,7 +139,7 @@ static void add_product(const void *view, int64_t begin, int64_t end)
         const double scale = s->dt*s->fluid[s->particles.fluid[i]].density;
         float *product = &f->viscous_product[i].x;
         double add[3];
-        entry_friction(s, i, e, f->viscous_direction[i], 0, add);
+        entry_friction(s, i, e, f->viscous_direction[i], f->accel[i], 0, add, NULL);
         for (int c = 0; c < 3 && f->viscous_inverse[i].x > 0; c++) product[c] -= (float)(scale*add[c]);
     }
 }
@@ -80,12 +150,13 @@ static void keep_friction(const void *view, int64_t begin, int64_t end)
     const sph_fields *f = sph_fields_of(&s->particles);
     SPH_FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_boundary_entry *own = (tobi_boundary_entry *)e;
-        if (f->viscous_inverse[i].x > 0) entry_friction(s, i, e, f->viscous_velocity[i], 1, own->friction);
+        if (f->viscous_inverse[i].x > 0)
+            entry_friction(s, i, e, f->viscous_velocity[i], f->accel[i], 1, own->friction, own->couple);
     }
 }
 
-/* Over the entries of one body: impulse and angular impulse of friction on the particles in the step. w:
-   their velocities; NULL: all rest. */
+/* Over the entries of one body: what friction takes from it in the step, impulse and angular impulse. w:
+   velocities of the particles; NULL: all rest, and nothing turns around them. */
 typedef struct friction { const tobi_system *s; const tobi_float4 *w; int moving; } friction;
 
 static void sum_friction(const void *view, int64_t begin, int64_t end, double *t)
@@ -93,22 +164,23 @@ static void sum_friction(const void *view, int64_t begin, int64_t end, double *t
     const friction *q = view;
     const tobi_system *s = q->s;
     const tobi_boundary_links *n = &sph_of(s)->links;
+    const sph_fields *f = sph_fields_of(&s->particles);
     const tobi_body *b = &s->sim->bodies[n->link[begin].body];
+    const tobi_float4 none = {0, 0, 0, 0};
     if (!moves(s, n->link[begin].body)) return;
     for (int64_t k = begin; k < end; k++) {
         const int64_t i = n->link[k].particle;
-        double force[3], place[3], arm[3], torque[3];
-        if (!(sph_fields_of(&s->particles)->viscous_inverse[i].x > 0)) continue;
-        entry_friction(s, i, &n->entry[k], q->w ? q->w[i] : (tobi_float4){0, 0, 0, 0}, q->moving, force);
+        const double scale = s->dt*s->fluid[s->particles.fluid[i]].density;
+        double force[3], couple[3], place[3], arm[3], torque[3];
+        if (!(f->viscous_inverse[i].x > 0)) continue;
+        entry_friction(s, i, &n->entry[k], q->w ? q->w[i] : none, q->w ? f->accel[i] : none, q->moving, force,
+                       couple);
         find_place(&n->entry[k], place);
-        for (int a = 0; a < 3; a++) {
-            force[a] *= s->dt*s->fluid[s->particles.fluid[i]].density;
-            arm[a] = place[a] + b->lower[a] - b->centre[a];
-        }
+        for (int a = 0; a < 3; a++) arm[a] = place[a] + b->lower[a] - b->centre[a];
         vec3_cross(torque, arm, force);
         for (int a = 0; a < 3; a++) {
-            t[a] += force[a];
-            t[3 + a] += torque[a];
+            t[a] += scale*force[a];
+            t[3 + a] += scale*(torque[a] - couple[a]);
         }
     }
 }
@@ -187,11 +259,21 @@ static void find_factors(tobi_system *s)
     }
 }
 
+void sph_viscous_bodies_spin(tobi_system *s, const sph_view *v, int moving)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    const spinning q = {s, v, moving};
+    if (s->sim->body_count == 0) return;
+    for (int k = 0; k < s->sim->body_count && !moving; k++)
+        memcpy(n->answer[k], n->viscous[k].direction, sizeof n->answer[k]);
+    if (moving) show_velocities(s);
+    tobi_loop(s->sim->exec.threads, n->count, 0, add_spins, &q);
+}
+
 void sph_viscous_bodies_residual(tobi_system *s, int first)
 {
     const tobi_boundary_links *n = &sph_of(s)->links;
     if (s->sim->body_count == 0) return;
-    show_velocities(s);
     tobi_boundary_visit_entries(s, add_rows);
     if (!tobi_couple_any(s)) return;
     sum(s, sph_fields_of(&s->particles)->viscous_velocity, 1);
@@ -242,8 +324,6 @@ double sph_viscous_bodies_apply(tobi_system *s)
     const tobi_boundary_links *n = &sph_of(s)->links;
     double curve = 0;
     if (s->sim->body_count == 0) return 0;
-    for (int k = 0; k < s->sim->body_count; k++)
-        memcpy(n->answer[k], n->viscous[k].direction, sizeof n->answer[k]);
     tobi_boundary_visit_entries(s, add_product);
     if (!tobi_couple_any(s)) return 0;
     sum(s, sph_fields_of(&s->particles)->viscous_direction, 0);

@@ -3,6 +3,7 @@
    nothing in a scene without bodies. */
 #pragma once
 #include "core/system.h"
+#include "sph/view.h"
 
 /* Vectors are velocities, m/s and rad/s; impulses are over the volume of a particle, kg/m2/s and kg/m/s. */
 typedef struct sph_viscous_body {
@@ -20,6 +21,11 @@ typedef struct sph_viscous_body {
 void sph_viscous_bodies_begin(tobi_system *s);
 /* Bodies go as they do, without an answer: for what is read between steps. */
 void sph_viscous_bodies_rest(tobi_system *s);
+/* What bodies add to the shapes of neighbourhoods, between sph_viscous_shape and sph_viscous_close. */
+void sph_viscous_bodies_shape(tobi_system *s);
+/* And to the rotations of v->viscous.operand, after sph_viscous_spin. moving: 1 bodies go as they do, with
+   what friction changes; 0 by the direction of the search. */
+void sph_viscous_bodies_spin(tobi_system *s, const sph_view *v, int moving);
 /* Adds the friction at the present velocities to residual and diagonal of the particles, and finds the
    residuals of the bodies. first: 1 in the first call of a solve. */
 void sph_viscous_bodies_residual(tobi_system *s, int first);

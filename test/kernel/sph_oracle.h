@@ -14,7 +14,8 @@ enum {
     TENSOR, WALLED = TENSOR + 6, MOMENT, MEAN = MOMENT + 3, DROP, MIDWAY, DAMPED,
     VISCOUS, VISCOUS_EXPECTED = VISCOUS + 3, VISCOUS_RESIDUAL = VISCOUS_EXPECTED + 3,
     VISCOUS_DIRECTION = VISCOUS_RESIDUAL + 3, VISCOUS_PRODUCT = VISCOUS_DIRECTION + 3,
-    VISCOUS_INVERSE = VISCOUS_PRODUCT + 3, COLUMNS = VISCOUS_INVERSE + 3
+    VISCOUS_INVERSE = VISCOUS_PRODUCT + 3, TURNING = VISCOUS_INVERSE + 3, LACK = TURNING + 4,
+    COLUMNS = LACK + 4
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
@@ -25,7 +26,8 @@ static const char *const column_name[COLUMNS] = {
     "cx", "cy", "cz", "mean pressure", "drop", "target_divergence", "damped",
     "viscous x", "viscous y", "viscous z", "expected x", "expected y", "expected z",
     "viscous rx", "viscous ry", "viscous rz", "viscous qx", "viscous qy", "viscous qz",
-    "viscous Aqx", "viscous Aqy", "viscous Aqz", "viscous Mx", "viscous My", "viscous Mz"
+    "viscous Aqx", "viscous Aqy", "viscous Aqz", "viscous Mx", "viscous My", "viscous Mz",
+    "Jxx", "Jyy", "Jzz", "Jxy", "Jyz", "Jzx", "wall's lack", "1/trace"
 };
 
 enum { TABLE = 4000 };

@@ -114,7 +114,7 @@ static void rig_bind_viscosity(rig *g, double mu)
     g->view.dynamic = (float)mu;
     g->view.viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
                                          f->viscous_direction, f->viscous_product, f->viscous_inverse,
-                                         f->viscous_velocity};
+                                         f->viscous_turning, f->viscous_lack, f->viscous_velocity, 1};
 }
 
 /* Still water that begins under the first layers and has sunk by a spacing since. */
@@ -263,6 +263,8 @@ static void rig_get(const rig *g, row *s)
             s[i][VISCOUS_INVERSE + a] = (&f->viscous_inverse[i].x)[a];
         }
         for (int a = 0; a < 4; a++) s[i][WALL + a] = (&f->wall[i].x)[a];
+        for (int a = 0; a < 4; a++) s[i][TURNING + a] = (&f->viscous_turning[i].x)[a];
+        for (int a = 0; a < 4; a++) s[i][LACK + a] = (&f->viscous_lack[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][NORMAL + a] = (&f->normal[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][TENSOR + a] = (&f->stretch[i].x)[a];
         for (int a = 0; a < 3; a++) s[i][TENSOR + 4 + a] = (&f->shear[i].x)[a];
@@ -298,6 +300,8 @@ static void rig_set(rig *g, const row *s)
         f->target_divergence[i] = (float)s[i][MIDWAY]; f->damped[i] = (float)s[i][DAMPED];
         for (int a = 0; a < 3; a++) (&f->moment[i].x)[a] = (float)s[i][MOMENT + a];
         for (int a = 0; a < 4; a++) (&f->wall[i].x)[a] = (float)s[i][WALL + a];
+        for (int a = 0; a < 4; a++) (&f->viscous_turning[i].x)[a] = (float)s[i][TURNING + a];
+        for (int a = 0; a < 4; a++) (&f->viscous_lack[i].x)[a] = (float)s[i][LACK + a];
         for (int a = 0; a < 4; a++) (&f->normal[i].x)[a] = (float)s[i][NORMAL + a];
         for (int a = 0; a < 4; a++) (&f->stretch[i].x)[a] = (float)s[i][TENSOR + a];
         for (int a = 0; a < 3; a++) (&f->shear[i].x)[a] = (float)s[i][TENSOR + 4 + a];

@@ -19,35 +19,127 @@ static double pair_weight(const oracle *o, const row *in, int i, int j, double r
     return 4*o->volume*o->g_scale*oracle_f(o, r)*0.5*(viscosity_of(o, in, i) + viscosity_of(o, in, j));
 }
 
-/* Eq. (2), by elimination. */
-static void oracle_viscous_spin(const oracle *o, const row *in, row *out, double *t)
+/* Distance from a no-slip plane in reach, 0: none; and sigma there. */
+static double no_slip_distance(const oracle *o, const row *in, int i, int k, double *sigma)
+{
+    const double s = fmax(wall_distance(o, in, i, k), 0.25*o->d);
+    if (!o->plane[k].no_slip || s >= o->h) return 0;
+    *sigma = look_up(o, o->sigma, s);
+    return s;
+}
+
+/* J of the pairs, of sums of V F, and N of the planes. */
+static void oracle_viscous_shape(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
     for (int i = 0; i < o->count; i++) {
-        double m[3][4] = {{0}}, trace = 0, along = 0;
+        const double share = 1/(4*viscosity_of(o, in, i));
+        double j6[6] = {0}, trace = 0, n[3] = {0};
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
-            double w[3], turn[3];
-            const double f = pair_weight(o, in, i, j, r);
-            for (int c = 0; c < 3; c++) w[c] = in[i][VISCOUS + c] - in[j][VISCOUS + c];
-            cross(x, w, turn);
+            const double f = share*pair_weight(o, in, i, j, r);
             for (int a = 0; a < 3; a++) {
-                m[a][3] += f*turn[a];
-                for (int b = 0; b < 3; b++) m[a][b] += f*((a == b)*r*r - x[a]*x[b]);
+                j6[a] += f*(r*r - x[a]*x[a]);
+                j6[3 + a] -= f*x[a]*x[(a + 1)%3];
             }
-            for (int c = 0; c < 3; c++) along += f*w[c]*x[c];
             trace += f*r*r;
         }
-        for (int a = 0; a < 3; a++) m[a][a] += 1e-6*trace;
+        for (int k = 0; k < o->plane_count; k++) {
+            double sigma, s = no_slip_distance(o, in, i, k, &sigma);
+            if (s > 0) n[o->plane[k].axis] += s*sigma;
+        }
+        memcpy(&out[i][TURNING], j6, sizeof j6);
+        out[i][LACK + 2] = 0;
+        out[i][LACK + 3] = trace > 0 ? 1/trace : 0;
+        for (int c = 0; c < 3; c++) {
+            out[i][VISCOUS_DIRECTION + c] = n[c];
+            out[i][VISCOUS_PRODUCT + c] = 0;
+        }
+    }
+}
+
+/* Eq. (3b): r by the parts without trace of the sum of x x and of N, then J with r (tr N - N). */
+static void oracle_viscous_close(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        const double *j = &in[i][TURNING], trace = 0.5*(j[0] + j[1] + j[2]);
+        double n[6], walls = 0, both = 0, square = 0, r = 1;
+        for (int c = 0; c < 3; c++) {
+            n[c] = in[i][VISCOUS_DIRECTION + c];
+            n[3 + c] = in[i][VISCOUS_PRODUCT + c];
+            walls += n[c];
+        }
+        for (int c = 0; c < 6; c++) {
+            const int diagonal = c < 3, inside = c < o->dimension || !diagonal;
+            const double part = inside ? n[c] - diagonal*walls/o->dimension : 0;
+            const double moment = diagonal ? trace - j[c] : -j[c];
+            square += (diagonal ? 1 : 2)*part*part;
+            both -= (diagonal ? 1 : 2)*part*moment;
+        }
+        if (square > 1e-4*walls*walls) r = both/square;
+        r = walls > 0 ? fmin(fmax(r, 0), 2) : 0;
+        for (int c = 0; c < 6; c++)
+            out[i][TURNING + c] = j[c] + (c < 3 ? r*walls + 2e-6*trace : 0) - r*n[c];
+        out[i][LACK + 2] = r;
+    }
+}
+
+/* Eq. (2), (3b), by elimination. */
+static void oracle_viscous_spin(const oracle *o, const row *in, row *out, double *t)
+{
+    static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        const double share = 1/(4*viscosity_of(o, in, i)), *w = &in[i][VISCOUS];
+        double m[3][4] = {{0}}, along = 0;
+        EACH_NEIGHBOUR(o, in, i, j, x, r) {
+            double difference[3], turn[3];
+            const double f = share*pair_weight(o, in, i, j, r);
+            for (int c = 0; c < 3; c++) difference[c] = w[c] - in[j][VISCOUS + c];
+            cross(x, difference, turn);
+            for (int c = 0; c < 3; c++) m[c][3] += f*turn[c];
+            for (int c = 0; c < 3; c++) along += f*difference[c]*x[c];
+        }
+        for (int k = 0; k < o->plane_count; k++) {
+            double sigma, slip[3], pulled[3], normal[3] = {0};
+            if (!(no_slip_distance(o, in, i, k, &sigma) > 0)) continue;
+            normal[o->plane[k].axis] = o->plane[k].sign;
+            for (int c = 0; c < 3; c++) slip[c] = (double)o->plane[k].velocity[c] - w[c];
+            cross(normal, slip, pulled);
+            for (int c = 0; c < 3; c++) m[c][3] -= in[i][LACK + 2]*sigma*pulled[c];
+        }
+        for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++) m[a][b] = in[i][TURNING + place[a][b]];
         for (int a = 0; a < 3; a++)
             for (int b = 0; b < 3; b++)
                 for (int c = 3; a != b && c >= a; c--) m[b][c] -= m[b][a]/m[a][a]*m[a][c];
-        for (int a = 0; a < 3; a++) out[i][ACC + a] = trace > 0 ? m[a][3]/m[a][a] : 0;
-        out[i][BAND] = trace > 0 ? along/trace : 0;
+        for (int a = 0; a < 3; a++) out[i][ACC + a] = in[i][LACK + 3] > 0 ? m[a][3]/m[a][a] : 0;
+        out[i][BAND] = along*in[i][LACK + 3];
+    }
+}
+
+/* Eq. (3): on i at w. */
+static void plane_friction(const oracle *o, const row *in, int i, double force[3], double own[3])
+{
+    const double lack = in[i][LACK + 2];
+    for (int k = 0; k < o->plane_count; k++) {
+        double sigma, swung[3], normal[3] = {0};
+        const double s = no_slip_distance(o, in, i, k, &sigma);
+        if (!(s > 0)) continue;
+        const double rate = 2*viscosity_of(o, in, i)*sigma/s;
+        normal[o->plane[k].axis] = o->plane[k].sign;
+        cross(&in[i][ACC], normal, swung);
+        for (int c = 0; c < 3; c++) {
+            if (c == o->plane[k].axis) continue;
+            const double slip = (double)o->plane[k].velocity[c] - in[i][VISCOUS + c];
+            force[c] += rate*((1 + 0.5*lack)*slip + lack*s*swung[c]);
+            own[c] += rate*(1 + 0.5*lack);
+        }
     }
 }
 
 /* Eq. (1), (3): the force per volume on i, w any field and accel its rotations; and what that is of w_i. */
-static void viscous_force(const oracle *o, const row *in, int i, int moving, double force[3], double own[3])
+static void viscous_force(const oracle *o, const row *in, int i, double force[3], double own[3])
 {
     for (int c = 0; c < 3; c++) force[c] = own[c] = 0;
     EACH_NEIGHBOUR(o, in, i, j, x, r) {
@@ -61,16 +153,7 @@ static void viscous_force(const oracle *o, const row *in, int i, int moving, dou
             own[c] += f;
         }
     }
-    for (int k = 0; k < o->plane_count; k++) {
-        const double s = fmax(wall_distance(o, in, i, k), 0.25*o->d);
-        if (!o->plane[k].no_slip || s >= o->h) continue;
-        const double rate = 2*viscosity_of(o, in, i)*look_up(o, o->sigma, s)/s;
-        for (int c = 0; c < 3; c++) {
-            if (c == o->plane[k].axis) continue;
-            force[c] += rate*(moving*(double)o->plane[k].velocity[c] - in[i][VISCOUS + c]);
-            own[c] += rate;
-        }
-    }
+    plane_friction(o, in, i, force, own);
 }
 
 static void oracle_viscous_rows(const oracle *o, const row *in, row *out, double *t)
@@ -78,7 +161,7 @@ static void oracle_viscous_rows(const oracle *o, const row *in, row *out, double
     (void)t;
     for (int i = 0; i < o->count; i++) {
         double force[3], own[3], rho = o->rho0[o->fluid[i]];
-        viscous_force(o, in, i, 1, force, own);
+        viscous_force(o, in, i, force, own);
         for (int c = 0; c < 3; c++) {
             out[i][VISCOUS_RESIDUAL + c] = rho*(in[i][VEL + c] - in[i][VISCOUS + c]) + o->dt*force[c];
             out[i][VISCOUS_INVERSE + c] = 1/(rho + o->dt*own[c]);
@@ -91,7 +174,7 @@ static void oracle_viscous_product(const oracle *o, const row *in, row *out, dou
     (void)t;
     for (int i = 0; i < o->count; i++) {
         double force[3], own[3];
-        viscous_force(o, in, i, 0, force, own);
+        viscous_force(o, in, i, force, own);
         for (int c = 0; c < 3; c++)
             out[i][VISCOUS_PRODUCT + c] = o->rho0[o->fluid[i]]*in[i][VISCOUS + c] - o->dt*force[c];
     }
@@ -149,13 +232,8 @@ static void oracle_viscous_finish(const oracle *o, const row *in, row *out, doub
         for (int c = 0; c < 3; c++)
             out[i][VEL + c] = in[i][VISCOUS + c] + in[i][VISCOUS_RESIDUAL + c]/o->rho0[o->fluid[i]] -
                               in[i][VISCOUS_EXPECTED + c];
-        for (int k = 0; k < o->plane_count; k++) {
-            const double s = fmax(wall_distance(o, in, i, k), 0.25*o->d);
-            if (!o->plane[k].no_slip || s >= o->h) continue;
-            for (int c = 0; c < 3; c++)
-                if (c != o->plane[k].axis)
-                    t[c] += o->dt*o->volume*2*viscosity_of(o, in, i)*look_up(o, o->sigma, s)/s*
-                            (in[i][VISCOUS + c] - (double)o->plane[k].velocity[c]);
-        }
+        double force[3] = {0}, own[3] = {0};
+        plane_friction(o, in, i, force, own);
+        for (int c = 0; c < 3; c++) t[c] -= o->dt*o->volume*force[c];
     }
 }
