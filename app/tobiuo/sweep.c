@@ -224,7 +224,8 @@ static int do_sweep(sweep *s)
     int code = finish_axes(s);
     if (!code) code = choose_folder(s);
     if (!code) code = check_runs(s);
-    for (int run = 0; run < s->runs && !code; run++) sweep_look(s, run, &code);
+    double end = 0;
+    for (int run = 0; run < s->runs && !code; run++) sweep_look(s, run, &end, &code);
     if (!code) code = make_folders(s->dir);
     if (code) return code;
     if (s->slurm) return sweep_write_slurm(s);

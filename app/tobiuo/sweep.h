@@ -33,8 +33,9 @@ char *sweep_path(const sweep *s, const char *format, ...) __attribute__((format(
 /* The summary of a run, NULL if it has none. */
 json_t *sweep_summary(const sweep *s, int run);
 
-/* sweep_run.c: what became of a run so far; a folder with results of another scene is told, and code set. */
-sweep_state sweep_look(const sweep *s, int run, int *code);
+/* sweep_run.c: what became of a run so far, and the time that it shall end at, s, where it has begun. Results
+   of another scene, or beyond that time, are told, and code set. */
+sweep_state sweep_look(const sweep *s, int run, double *end, int *code);
 /* Runs all that is not complete, `jobs` at a time. Returns the exit code. */
 int sweep_run(const sweep *s);
 int sweep_write_slurm(const sweep *s);

@@ -15,6 +15,9 @@ extern char **environ;
 
 typedef struct job { pid_t child; int run; double begun; } job;
 
+/* A run ends at its time but for the rounding of its sums. */
+static const double ROUNDING = 1e-9;
+
 static volatile sig_atomic_t stopped;
 static void note_stop(int number) { stopped = number; }
 
@@ -24,8 +27,8 @@ static int is_outcome(const json_t *summary, const char *word)
     return outcome && strcmp(outcome, word) == 0;
 }
 
-/* The scene of a run without what does not change its results. */
-static json_t *expected_scene(const sweep *s, int run)
+/* The scene of a run without its end and what does not change its results; *end: its end time, s. */
+static json_t *expected_scene(const sweep *s, int run, double *end)
 {
     overrides set = { 0 };
     if (s->until) overrides_add(&set, "end_time=%s", s->until);
@@ -36,22 +39,30 @@ static json_t *expected_scene(const sweep *s, int run)
     json_t *json = text ? json_loads(text, 0, NULL) : NULL;
     free(text);
     tobi_scene_free(scene);
+    *end = json_number_value(json_object_get(json, "end_time"));
     json_object_del(json, "threads");
+    json_object_del(json, "end_time");
     return json;
 }
 
-sweep_state sweep_look(const sweep *s, int run, int *code)
+sweep_state sweep_look(const sweep *s, int run, double *end, int *code)
 {
     char *name = sweep_name(s, run), *path = sweep_path(s, "%s/resolved.json", name);
-    json_t *there = json_load_file(path, 0, NULL), *expected = there ? expected_scene(s, run) : NULL;
+    json_t *there = json_load_file(path, 0, NULL), *expected = there ? expected_scene(s, run, end) : NULL;
     json_t *summary = sweep_summary(s, run);
+    const double time = json_number_value(json_object_get(summary, "time"));
+    const int whole = is_outcome(summary, "complete"), goes_on = whole || is_outcome(summary, "interrupted");
     sweep_state state = !there ? SWEEP_NEW
-                      : is_outcome(summary, "complete") ? SWEEP_DONE
-                      : !summary || is_outcome(summary, "interrupted") ? SWEEP_BEGUN : SWEEP_FAILED;
+                      : summary && !goes_on ? SWEEP_FAILED
+                      : whole && time >= *end*(1 - ROUNDING) ? SWEEP_DONE : SWEEP_BEGUN;
     json_object_del(there, "threads");
+    json_object_del(there, "end_time");
     if (there && expected && !json_equal(there, expected))
         *code = complain("%s/%s holds results of another scene; choose another --out, or remove it", s->dir,
                          name);
+    else if (expected && goes_on && time > *end*(1 + ROUNDING))
+        *code = complain("%s/%s has run to %g s already, beyond %g s; choose another --out, or remove it",
+                         s->dir, name, time, *end);
     json_decref(there);
     json_decref(expected);
     json_decref(summary);
@@ -60,8 +71,8 @@ sweep_state sweep_look(const sweep *s, int run, int *code)
     return state;
 }
 
-/* "run SCENE --quiet --out DIR/NAME --set ...", or "resume DIR/NAME --quiet". */
-static int start(const sweep *s, int run, sweep_state state, job *j)
+/* "run SCENE --quiet --out DIR/NAME --set ...", or "resume DIR/NAME --quiet --until END". */
+static int start(const sweep *s, int run, sweep_state state, double end, job *j)
 {
     char *name = sweep_name(s, run), *dir = sweep_path(s, "%s", name), *log = sweep_path(s, "%s.log", name);
     const long cores = sysconf(_SC_NPROCESSORS_ONLN), share = cores/s->jobs;
@@ -71,7 +82,8 @@ static int start(const sweep *s, int run, sweep_state state, job *j)
     overrides_add(&a, "%s", state == SWEEP_BEGUN ? dir : s->scene);
     overrides_add(&a, "--quiet");
     if (s->jobs > 1) overrides_add(&a, "--threads=%ld", share > 1 ? share : 1);
-    if (state != SWEEP_BEGUN) {
+    if (state == SWEEP_BEGUN) overrides_add(&a, "--until=%.17g", end);
+    else {
         overrides_add(&a, "--out=%s", dir);
         if (s->until) overrides_add(&a, "--until=%s", s->until);
         for (int k = 0; k < s->axis_count; k++)
@@ -154,7 +166,8 @@ int sweep_run(const sweep *s)
     const int first = s->only >= 0 ? s->only : 0, end = s->only >= 0 ? s->only + 1 : s->runs;
     catch_stops();
     for (int run = first; run < end && !stopped; run++) {
-        const sweep_state state = sweep_look(s, run, &code);
+        double ends = 0;
+        const sweep_state state = sweep_look(s, run, &ends, &code);
         done += state == SWEEP_DONE;
         if (state == SWEEP_DONE) continue;
         if (state == SWEEP_FAILED) {
@@ -169,7 +182,7 @@ int sweep_run(const sweep *s)
             if (ended) worst = ended;
             running--;
         }
-        code = stopped ? 0 : start(s, run, state, &jobs[slot]);
+        code = stopped ? 0 : start(s, run, state, ends, &jobs[slot]);
         if (code) jobs[slot].child = 0;
         running += jobs[slot].child > 0;
         if (code) break;

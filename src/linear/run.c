@@ -39,6 +39,7 @@ double tobi_run_blend(const tobi_linear_run *run, double *y, const double *x, do
 
 void tobi_run_center(const tobi_linear_run *run, double *y)
 {
+    if (run->a->center) run->a->center(run->a->user, y);
     if (!run->a->singular || run->a->rows == 0) return;
     const double sum = launch(run, run->kernel->vector_sum, y, NULL, 0, 1);
     launch(run, run->kernel->vector_shift, y, NULL, sum/(double)run->a->rows, 0);

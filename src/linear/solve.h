@@ -13,6 +13,7 @@ typedef struct tobi_linear_system {
     void *user;            /* for the functions below                                               */
     void (*apply)(void *user, double *y, const double *x);                 /* y = A x               */
     void (*precondition)(void *user, double *z, const double *r);          /* z ~ A^-1 r; NULL: z = r */
+    void (*center)(void *user, double *y);   /* for other constants of A: takes them out; NULL: none */
     int (*stop)(void *user);               /* asked once per iteration, 1 = give up; NULL: never    */
 } tobi_linear_system;
 

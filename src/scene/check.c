@@ -5,6 +5,7 @@
 #include "base/param.h"
 #include <errno.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -65,34 +66,36 @@ void tobi_check_file(tobi_source *source, const tobi_place *place, const char *p
         tobi_source_mistake(source, place, "%s is not a file", path);
 }
 
-typedef enum named { FLUIDS, SOLIDS, BODIES } named;
-
-/* Name k of a kind, NULL past its end. */
-static const char *name_of(const tobi_scene *scene, named kind, int k)
+/* Whether one of the first entries of a list has the name of `entry`, which is then told. */
+static int tell_name(const tobi_scene *scene, tobi_source *source, const tobi_place *entry,
+                     const char *list, size_t first)
 {
-    switch (kind) {
-    case FLUIDS: return k < scene->fluid_count ? scene->fluids[k].def.name : NULL;
-    case SOLIDS: return k < scene->solid_count ? scene->solids[k].def.name : NULL;
-    default: return k < scene->body_count ? scene->bodies[k].def.name : NULL;
+    const json_t *own = json_array_get(json_object_get(scene->root, entry->up->key), entry->index);
+    const json_t *others = json_object_get(scene->root, list);
+    const char *name = json_string_value(json_object_get(own, "name"));
+    const tobi_place place = { entry, "name", 0 };
+    for (size_t k = 0; name && k < first && k < json_array_size(others); k++) {
+        const char *other = json_string_value(json_object_get(json_array_get(others, k), "name"));
+        if (!other || strcmp(other, name) != 0) continue;
+        tobi_source_mistake(source, &place, "\"%s\" is already the name of %s[%zu]", name, list, k);
+        return 1;
     }
+    return 0;
 }
 
-/* A name must be the only one among fluids, solids and bodies. */
-static void check_name(const tobi_scene *scene, tobi_source *source, const tobi_place *entry, named kind)
+void tobi_check_name(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
+{
+    tell_name(scene, source, entry, entry->up->key, entry->index);
+}
+
+/* Fluids, solids and bodies share their names. */
+static void check_name(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
 {
     static const char *const lists[] = { "fluids", "solids", "bodies" };
-    tobi_place place = { entry, "name", 0 };
-    int number = (int)entry->index;
-    json_t *value = json_array_get(json_object_get(scene->root, lists[kind]), entry->index);
-    if (!json_is_string(json_object_get(value, "name"))) return;      /* missing: already told */
-    const char *name = name_of(scene, kind, number), *other;
-    for (named k = FLUIDS; k <= kind; k++)
-        for (int i = 0; (k < kind || i < number) && (other = name_of(scene, k, i)); i++)
-            if (strcmp(other, name) == 0) {
-                tobi_source_mistake(source, &place, "\"%s\" is already the name of %s[%d]", name, lists[k],
-                                    i);
-                return;
-            }
+    for (int k = 0; k < 3; k++) {
+        const int own = strcmp(lists[k], entry->up->key) == 0;
+        if (tell_name(scene, source, entry, lists[k], own ? entry->index : SIZE_MAX) || own) return;
+    }
 }
 
 static int is_empty(const tobi_scene *scene, const char *key)
@@ -159,7 +162,7 @@ static void check_fluids(const tobi_scene *scene, tobi_source *source)
     tobi_place fluids = { &root, "fluids", 0 };
     for (int i = 0; i < scene->fluid_count && !tobi_report_full(source->report); i++) {
         tobi_place entry = { &fluids, NULL, (size_t)i };
-        check_name(scene, source, &entry, FLUIDS);
+        check_name(scene, source, &entry);
         if (i > 0) check_mixture(scene, source, &entry);
         tobi_check_fills(scene, source, &entry, scene->fluids[i].fills, scene->fluids[i].fill_count);
     }
@@ -201,7 +204,7 @@ static void check_solids(const tobi_scene *scene, tobi_source *source)
     tobi_place solids = { &root, "solids", 0 };
     for (int i = 0; i < scene->solid_count && !tobi_report_full(source->report); i++) {
         tobi_place entry = { &solids, NULL, (size_t)i };
-        check_name(scene, source, &entry, SOLIDS);
+        check_name(scene, source, &entry);
         check_solid(scene, source, &entry);
         check_cells(scene, source, &entry);
         tobi_check_file(source, &(tobi_place){ &entry, "texture", 0 }, scene->solids[i].def.texture);
@@ -280,7 +283,7 @@ static void check_bodies(const tobi_scene *scene, tobi_source *source)
         const tobi_scene_body *body = &scene->bodies[i];
         tobi_place entry = { &bodies, NULL, (size_t)i }, mesh = { &entry, "mesh", 0 };
         tobi_place rotation = { &entry, "rotation", 0 }, axis = { &rotation, "axis", 0 };
-        check_name(scene, source, &entry, BODIES);
+        check_name(scene, source, &entry);
         tobi_check_file(source, &mesh, body->def.mesh);
         tobi_check_file(source, &(tobi_place){ &entry, "texture", 0 }, body->def.texture);
         check_shape(scene, source, i, &entry);

@@ -122,11 +122,7 @@ void tobi_check_probes(const tobi_scene *scene, tobi_source *source)
     const tobi_place root = { 0 }, probes = { &root, "probes", 0 };
     for (int i = 0; i < scene->probe_count && !tobi_report_full(source->report); i++) {
         const one o = { scene, source, &scene->probes[i], { &probes, NULL, (size_t)i } };
-        const tobi_place name = { &o.entry, "name", 0 };
-        for (int j = 0; j < i; j++)
-            if (o.def->name && scene->probes[j].name && strcmp(o.def->name, scene->probes[j].name) == 0)
-                tobi_source_mistake(source, &name, "\"%s\" is already the name of probes[%d]",
-                                    o.def->name, j);
+        tobi_check_name(scene, source, &o.entry);
         check_inside(&o, "position", o.def->position);
         const tobi_bound bound = scene->probes_bound[i];
         check_keys(&o, bound);

@@ -77,11 +77,8 @@ void tobi_joint_list_check(const tobi_scene *scene, tobi_source *source)
     tobi_place joints = { &root, "joints", 0 };
     for (int i = 0; i < scene->joint_count && !tobi_report_full(source->report); i++) {
         const tobi_joint_def *joint = &scene->joints[i];
-        tobi_place entry = { &joints, NULL, (size_t)i }, name = { &entry, "name", 0 };
-        for (int k = 0; joint->name && k < i; k++)
-            if (scene->joints[k].name && strcmp(joint->name, scene->joints[k].name) == 0)
-                tobi_source_mistake(source, &name, "\"%s\" is already the name of joints[%d]", joint->name,
-                                    k);
+        tobi_place entry = { &joints, NULL, (size_t)i };
+        tobi_check_name(scene, source, &entry);
         check_bodies(scene, source, joint, &entry);
         check_axis(scene, source, joint, &entry);
         check_hinge(scene, source, joint, &entry);

@@ -57,10 +57,8 @@ void tobi_lines_check(const tobi_scene *scene, tobi_source *source)
     tobi_place lines = { &root, "lines", 0 };
     for (int i = 0; i < scene->line_count && !tobi_report_full(source->report); i++) {
         const tobi_line_def *line = &scene->lines[i];
-        tobi_place entry = { &lines, NULL, (size_t)i }, name = { &entry, "name", 0 };
-        for (int j = 0; line->name && j < i; j++)
-            if (scene->lines[j].name && strcmp(line->name, scene->lines[j].name) == 0)
-                tobi_source_mistake(source, &name, "\"%s\" is already the name of lines[%d]", line->name, j);
+        tobi_place entry = { &lines, NULL, (size_t)i };
+        tobi_check_name(scene, source, &entry);
         check_ends(scene, source, line, &entry);
         check_keys(source, line, &entry);
     }

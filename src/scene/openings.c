@@ -16,11 +16,11 @@ typedef struct opening_list {
 static const opening_list inlets = { "inlets", &tobi_inlet_table, TOBI_INLET_LIMIT };
 static const opening_list outlets = { "outlets", &tobi_outlet_table, TOBI_OUTLET_LIMIT };
 
-static tobi_status read_list(const tobi_binder *binder, json_t *root, const opening_list *l,
+static tobi_status read_list(const tobi_scene *scene, const tobi_binder *binder, const opening_list *l,
                              const tobi_place *at, void **defs, int *count)
 {
     tobi_place place = { at, l->key, 0 };
-    json_t *list = json_object_get(root, l->key);
+    json_t *list = json_object_get(scene->root, l->key);
     if (!list) return TOBI_OK;
     if (!json_is_array(list)) {
         tobi_source_mistake(binder->source, &place, "is %s, must be a list [ { ... } ]",
@@ -39,6 +39,7 @@ static tobi_status read_list(const tobi_binder *binder, json_t *root, const open
         void *def = out + i*l->table->size;
         tobi_param_defaults(l->table, def);
         tobi_bind(binder, l->table, json_array_get(list, i), &entry, NULL, def);
+        tobi_check_name(scene, binder->source, &entry);
         tobi_place file = { &entry, "file", 0 };
         if (l == &inlets) tobi_check_file(binder->source, &file, ((const tobi_inlet_def *)def)->file);
         *count = (int)i + 1;
@@ -50,10 +51,10 @@ static tobi_status read_list(const tobi_binder *binder, json_t *root, const open
 tobi_status tobi_openings_read(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
 {
     void *defs = NULL;
-    TOBI_TRY(read_list(binder, scene->root, &inlets, root, &defs, &scene->inlet_count));
+    TOBI_TRY(read_list(scene, binder, &inlets, root, &defs, &scene->inlet_count));
     scene->inlets = defs;
     defs = NULL;
-    TOBI_TRY(read_list(binder, scene->root, &outlets, root, &defs, &scene->outlet_count));
+    TOBI_TRY(read_list(scene, binder, &outlets, root, &defs, &scene->outlet_count));
     scene->outlets = defs;
     return TOBI_OK;
 }

@@ -132,8 +132,10 @@ void tobi_check_overlaps(const tobi_scene *scene, tobi_source *source);
 /* check_probes.c; what the kind of a probe does not read is taken out of what its definition has become. */
 void tobi_check_probes(const tobi_scene *scene, tobi_source *source);
 void tobi_probe_drop_unread(const tobi_probe_def *def, json_t *object);
-/* check.c: whether both corners are right; a file that the scene names. */
+/* check.c: whether both corners are right; a file that the scene names; the name of an entry of a list of the
+   scene, which no entry before it may have. */
 int  tobi_check_has_domain(const tobi_scene *scene);
+void tobi_check_name(const tobi_scene *scene, tobi_source *source, const tobi_place *entry);
 void tobi_check_file(tobi_source *source, const tobi_place *place, const char *path);
 
 /* unused.c: reports keys that are given and that nothing would read; takes them out of what the definition

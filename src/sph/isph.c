@@ -278,7 +278,9 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     isph_forces_predict(&m->solver, s);
     sph_soft_predict(s, m->solver.sweeps.count == 0);
+    m->solver.pockets = m->memory.vessel == SPH_VESSEL_POCKETS;
     const tobi_linear_report report = isph_solver_run(&m->solver, s);
+    if (m->solver.pockets) m->memory.vessel = SPH_VESSEL_POCKETS;
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     TOBI_TRY(judge(s, m, &report, err));
     m->memory.started = 1;

@@ -37,6 +37,10 @@
 /* Lack of volume that the source takes out at most, and in full vessels, where it fills cavities. */
 #define ISPH_STRETCH_MAX 0.05
 #define ISPH_CAVITY_MAX 0.5
+/* Of the loss of neighbours: up to which that is whole, as of the row below a flat surface, and from which
+   nothing pulls, as of drops that just touch. */
+#define ISPH_STRETCH_WHOLE 0.03
+#define ISPH_STRETCH_NONE 0.06
 /* Error of volume that full vessels leave to the shift: what disorder makes, and the source would turn into
    motion. */
 #define ISPH_VOLUME_LEFT 0.02
@@ -264,8 +268,9 @@ TOBI_FN void isph_gravity(const isph_view *v, int64_t i, double *totals)
 /* Pa/m2: what presses too dense liquid apart, and, in the bulk, pulls too thin liquid together, eq. (8). */
 TOBI_FN double isph_volume_source(const isph_view *v, int64_t i, double divergence)
 {
-    const int bulk = !(v->gate[i] > 0);
-    const double least = !bulk ? 0 : v->open ? -ISPH_STRETCH_MAX : -ISPH_CAVITY_MAX;
+    const double loss = 1 - v->trace[i]/(double)v->dimension;
+    const double least = v->gate[i] > 0 ? 0 : !v->open ? -ISPH_CAVITY_MAX
+                       : -ISPH_STRETCH_MAX*isph_fade(loss, ISPH_STRETCH_WHOLE, ISPH_STRETCH_NONE);
     const tobi_float4 c = v->concentration_gradient[i];
     const double lack = v->surface_lack*v->spacing*sqrt((double)c.x*c.x + (double)c.y*c.y + (double)c.z*c.z),
                  error = v->volume_sum*(v->concentration[i] - 1 + lack) - v->volume_change*v->dt*divergence,

@@ -4,6 +4,7 @@
 #include "sph/isph_solve.h"
 #include "sph/fields.h"
 #include "sph/isph_forces.h"
+#include "sph/isph_pockets.h"
 #include "sph/isph_surface.h"
 #include "sph/isph_sweeps.h"
 #include "sph/soft.h"
@@ -19,7 +20,7 @@ static const double DAMPING = 0.7;
     X(double, m->view.inverse_diagonal) X(double, m->view.source) X(tobi_double3, m->work)           \
     X(tobi_float4, m->view.concentration_gradient) X(isph_tensor, m->view.inverse) X(float, m->view.trace) \
     X(float, m->view.gate) X(float, m->view.scale) X(float, m->view.concentration) \
-    X(float, m->view.body_share)
+    X(float, m->view.body_share) X(uint8_t, m->pocket)
 
 static int64_t row_bytes(void)
 {
@@ -234,6 +235,20 @@ static tobi_linear_report run(isph_solver *m, const tobi_linear_system *a)
     return tobi_cg(m->exec, a, &how, b, x, m->work);
 }
 
+/* A closed pocket is known by a solve that fails, and from then on looked for. */
+static tobi_linear_report run_with_pockets(isph_solver *m, const tobi_linear_system *a)
+{
+    tobi_linear_system centered = *a;
+    tobi_linear_report report = { .status = TOBI_LINEAR_LIMIT };
+    centered.center = isph_pockets_center;
+    if (!m->pockets) report = run(m, a);
+    if (report.status == TOBI_LINEAR_CONVERGED || report.status == TOBI_LINEAR_STOPPED || a->singular)
+        return report;
+    const int found = isph_pockets_find(m, a), again = found > 0 || m->pockets;
+    m->pockets |= found > 0;
+    return again ? run(m, found > 0 ? &centered : a) : report;
+}
+
 /* Neighbours in buffers: those of an outlet have a given pressure, which goes to the source; those of an
    inlet do not move by pressure, so that nothing passes between them and a row. */
 static void take_held(const void *view, int64_t begin, int64_t end, double *totals)
@@ -275,7 +290,7 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
                                         .precondition = grid ? precondition : precondition_by_diagonal,
                                         .stop = ask_stop };
     const tobi_linear_report report =
-        m->sweeps.count > 0 ? isph_sweep_all(m, system.singular) : run(m, &system);
+        m->sweeps.count > 0 ? isph_sweep_all(m, system.singular) : run_with_pockets(m, &system);
     tobi_launch(m->exec, m->kernel->isph_store_pressure, &m->view, 0, n, NULL);
     m->view.gravity_dt = 0;
     return report;

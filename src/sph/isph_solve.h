@@ -48,6 +48,9 @@ typedef struct isph_solver {
     int64_t mirrors;                 /* room for them                                               */
     int64_t groups;                  /* of images, that are in use                                  */
     int corners;                     /* 1: those of corners, further faces, follow all of the entries */
+    int pockets;                     /* 1: closed pockets were found once, each solve looks for them */
+    uint8_t *pocket;                 /* of each row, see isph_pockets.c                             */
+    int64_t pocket_rows[TOBI_SUMS];  /* of each pocket                                              */
     isph_sweeps sweeps;
     int coupled;                     /* 1: bodies move by forces                                    */
     isph_coupling *coupling;         /* of s->links, see isph_forces.h                              */

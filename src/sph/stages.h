@@ -3,8 +3,9 @@
 #include "core/system.h"
 #include "sph/kernels.h"
 
-/* A vessel that is full at the start stays full: voids that disorder opens are then no free surface. */
-enum { SPH_VESSEL_UNKNOWN, SPH_VESSEL_OPEN, SPH_VESSEL_FULL };
+/* A vessel that is full at the start stays full: voids that disorder opens are then no free surface.
+   Pockets: an open one in which isph has met closed pockets. */
+enum { SPH_VESSEL_UNKNOWN, SPH_VESSEL_OPEN, SPH_VESSEL_FULL, SPH_VESSEL_POCKETS };
 
 /* Everything of a view that does not belong to one method; after each sort. vessel: SPH_VESSEL_*. */
 void sph_bind_view(const tobi_system *s, sph_view *v, double vessel);

@@ -94,6 +94,7 @@ tobi_status tobi_beside_check(tobi_world *w, tobi_error *err)
     if (!(periodic[0] || periodic[1] || periodic[2])) return TOBI_OK;
     TOBI_TRY(check_bodies(w, err));
     if (!s) return TOBI_OK;
+    TOBI_TRY(tobi_exec_reserve(&w->sim.exec, s->particles.count, err));      /* the systems start later */
     tobi_launch(&w->sim.exec, TOBI_HOST(count_near, 1, 0), &v, 0, s->particles.count, t);
     for (int64_t i = 0; t[0] > 0 && i < s->particles.count; i++) {
         const int a = near_side(&v, i);

@@ -45,3 +45,15 @@ tobi_status tobi_names_check_joint(const tobi_world *w, const char *name, tobi_e
         if (strcmp(c->at[k].name, name) == 0) return refuse("joint", "joint", k, name, err);
     return TOBI_OK;
 }
+
+tobi_status tobi_names_check_opening(const tobi_world *w, int outlet, const char *name, tobi_error *err)
+{
+    const char *kind = outlet ? "outlet" : "inlet";
+    int number = 0;
+    for (int k = 0; k < w->sim.opening_count; k++) {
+        if (w->sim.openings[k].outlet != outlet) continue;
+        if (strcmp(w->sim.openings[k].name, name) == 0) return refuse(kind, kind, number, name, err);
+        number++;
+    }
+    return TOBI_OK;
+}

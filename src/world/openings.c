@@ -3,6 +3,7 @@
    number, the same for any number of threads. Drawback: columns stand still across the flow; what leaves a
    buffer sideways is lost to them and free at once. */
 #include "world/openings.h"
+#include "world/names.h"
 #include "base/error.h"
 #include "base/param.h"
 #include "geom/vec3.h"
@@ -18,8 +19,6 @@ static const double GOLDEN = 0.6180339887498949;
 static const double SOON = 1e-6;
 /* Buffers: how far behind an inlet regions are cut out. */
 static const double BEHIND = 3;
-
-static double dot(const double a[3], const double b[3]) { return vec3_dot(a, b); }
 
 static tobi_status refuse(const tobi_opening *o, const char *key, const char *why, tobi_error *err)
 {
@@ -59,7 +58,7 @@ static tobi_status set_axes(tobi_opening *o, const double normal[3], const doubl
     if (fabs(n[2]) < fabs(n[flattest])) flattest = 2;
     memcpy(o->along, vec3_length(along) > 0 ? along : axes[flattest], sizeof o->along);
     vec3_normalize(o->along);
-    vec3_add_scaled(o->along, o->along, -dot(o->along, n), n);
+    vec3_add_scaled(o->along, o->along, -vec3_dot(o->along, n), n);
     if (!(vec3_length(o->along) > 1e-6))
         return refuse(o, "along", "has its width along its normal; allowed is across", err);
     vec3_normalize(o->along);
@@ -209,6 +208,7 @@ static tobi_status add(tobi_world *w, const tobi_opening *o, int limit, tobi_err
                          w->system[0].method->name);
     if (same >= limit) return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d %s", limit,
                                         o->outlet ? "outlets" : "inlets");
+    TOBI_TRY(tobi_names_check_opening(w, o->outlet, o->name, err));
     TOBI_TRY(check_place(o, &w->system[0].box, &w->system[0].smoothing, err));
     TOBI_TRY(check_bodies(w, o, err));
     tobi_opening *more = realloc(s->openings, (size_t)(s->opening_count + 1)*sizeof *more);

@@ -18,7 +18,7 @@
 
 static const tobi_param inlet_rows[] = {
     { .key = "name", TEXT, AT(tobi_inlet_def, name), .unit = "name", .text = "inlet", .required = true,
-      .doc = "Name of the inlet, for messages." },
+      .doc = "Name of the inlet, used once among inlets." },
     { .key = "fluid", TEXT, AT(tobi_inlet_def, fluid), .unit = "name",
       .doc = "Name of the fluid that comes in; none takes the first." },
     PATCH(tobi_inlet_def),
@@ -46,7 +46,7 @@ const tobi_param_table tobi_inlet_table = {
 
 static const tobi_param outlet_rows[] = {
     { .key = "name", TEXT, AT(tobi_outlet_def, name), .unit = "name", .text = "outlet", .required = true,
-      .doc = "Name of the outlet, for messages." },
+      .doc = "Name of the outlet, used once among outlets." },
     PATCH(tobi_outlet_def),
     { .key = "level", REAL, AT(tobi_outlet_def, level), .def = { TOBI_NO_LEVEL }, PLACE, .unit = "m",
       .text = "none",

@@ -81,10 +81,11 @@ static tobi_status measure_region(const tobi_system *s, const char *name, const 
     return TOBI_OK;
 }
 
-/* Takes the last `count` regions away again. */
-static void drop_regions(tobi_world *w, int count)
+/* Takes the last `count` regions away again, and the notes that came with them. */
+static void drop_regions(tobi_world *w, int count, int notes)
 {
     for (int k = 0; k < count; k++) tobi_mesh_free(&w->regions[--w->region_count].shape);
+    tobi_world_drop_notes(w, notes);
 }
 
 /* Appends the regions of the next fluid or solid of a system; *volume is their sum, m3 (2-D: m2). */
@@ -96,6 +97,7 @@ static tobi_status add_regions(tobi_world *w, const tobi_system *s, const char *
     w->regions = more;
     char whose[160];
     snprintf(whose, sizeof whose, "%s '%s'", kind, name ? name : "");
+    const int notes = w->note_count;
     *volume = 0;
     for (int k = 0; k < count; k++) {
         tobi_region *r = &w->regions[w->region_count];
@@ -110,7 +112,7 @@ static tobi_status add_regions(tobi_world *w, const tobi_system *s, const char *
         *volume += r->volume;
         if (status == TOBI_OK) status = tobi_world_add_notes(w, kind, name, r->shape.notes, err);
         if (status == TOBI_OK) continue;
-        drop_regions(w, k + 1);
+        drop_regions(w, k + 1, notes);
         return status;
     }
     return TOBI_OK;
@@ -142,13 +144,14 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     if (s->fluid_count == TOBI_FLUID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
     const char *name = def->name ? def->name : "fluid";
+    const int notes = w->note_count;
     double volume;
     TOBI_TRY(tobi_names_check_matter(w, "fluid", name, err));
     TOBI_TRY(tobi_mixture_add(w, def, err));
     TOBI_TRY(add_regions(w, s, "fluid", name, fills, fill_count, &volume, err));
     const tobi_status status = note_support(w, def, err);
     if (status != TOBI_OK) {
-        drop_regions(w, fill_count);
+        drop_regions(w, fill_count, notes);
         return status;
     }
     tobi_fluid *f = &s->fluid[s->fluid_count++];
@@ -192,6 +195,7 @@ static tobi_status add_solid(tobi_world *w, tobi_system *s, const tobi_solid_def
                              const tobi_fill_def *fills, int fill_count, tobi_error *err)
 {
     const char *name = def->name ? def->name : "solid";
+    const int notes = w->note_count;
     double volume;
     char note[200] = "";
     TOBI_TRY(tobi_names_check_matter(w, "solid", name, err));
@@ -201,14 +205,14 @@ static tobi_status add_solid(tobi_world *w, tobi_system *s, const tobi_solid_def
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a solid");
     s->solids = more;
     TOBI_TRY(add_regions(w, s, "solid", name, fills, fill_count, &volume, err));
-    const tobi_status status = make_solid(w, s, def, name, volume, fill_count, note, err);
-    if (status != TOBI_OK) {
+    tobi_status status = make_solid(w, s, def, name, volume, fill_count, note, err);
+    if (status == TOBI_OK) status = tobi_world_add_notes(w, "solid", name, note, err);
+    if (status == TOBI_OK) s->solid_count++;
+    else {
         free(s->solids[s->solid_count].clamped_to);
-        drop_regions(w, fill_count);
-        return status;
+        drop_regions(w, fill_count, notes);
     }
-    s->solid_count++;
-    return note[0] ? tobi_world_add_notes(w, "solid", name, note, err) : TOBI_OK;
+    return status;
 }
 
 tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const tobi_fill_def *fills,

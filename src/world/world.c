@@ -98,7 +98,7 @@ void tobi_world_destroy(tobi_world *w)
     tobi_openings_free(w);
     free(w->lines);
     tobi_constraints_free(&w->sim.constraints);
-    for (int k = 0; k < w->note_count; k++) free(w->notes[k]);
+    tobi_world_drop_notes(w, 0);
     free(w->notes);
     free(w->texture);
     tobi_world_free_images(w);
@@ -106,6 +106,11 @@ void tobi_world_destroy(tobi_world *w)
     tobi_pieces_free(&w->pieces);
     tobi_exec_free(&w->sim.exec);
     free(w);
+}
+
+void tobi_world_drop_notes(tobi_world *w, int count)
+{
+    while (w->note_count > count) free(w->notes[--w->note_count]);
 }
 
 static tobi_status keep_note(tobi_world *w, char *text, tobi_error *err)
@@ -189,9 +194,13 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     tobi_at_key(err, status, "%s", tobi_body_shape_key(def));
     if (status == TOBI_OK)
         status = tobi_world_read_image(w, "body", b->name, def->texture, b->mesh.texture, err);
+    const int notes = w->note_count;
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", b->name, b->mesh.notes, err);
-    if (status != TOBI_OK) tobi_body_free(b);
-    else s->sim->body_count++;
+    if (status == TOBI_OK) s->sim->body_count++;
+    else {
+        tobi_body_free(b);
+        tobi_world_drop_notes(w, notes);
+    }
     return status;
 }
 
@@ -253,11 +262,9 @@ static tobi_status fill_systems(tobi_world *w, tobi_error *err)
     return status;
 }
 
-tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
+static tobi_status start(tobi_world *w, tobi_error *err)
 {
-    TOBI_NEED_WORLD(w);
     int64_t fluid, body, bytes, room = 0;
-    if (w->started) return TOBI_OK;
     TOBI_TRY(tobi_world_estimate(w, &fluid, &body, &bytes, err));
     for (int k = 0; k < w->region_count; k++)
         room += tobi_region_count(&w->system[w->regions[k].system], &w->regions[k]);
@@ -289,6 +296,18 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     w->started = 1;
     const tobi_status status = tobi_world_note_pieces(w, err);
     w->started = status == TOBI_OK;
+    return status;
+}
+
+tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    const int notes = w->note_count, step_noted = w->step_noted;
+    if (w->started) return TOBI_OK;
+    const tobi_status status = start(w, err);
+    if (status == TOBI_OK) return TOBI_OK;
+    tobi_world_drop_notes(w, notes);
+    w->step_noted = step_noted;
     return status;
 }
 

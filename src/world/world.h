@@ -85,6 +85,9 @@ tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tob
 tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *name, const char *notes,
                                  tobi_error *err);
 
+/* Takes back all notes from number `count` on: those of a call that failed. */
+void tobi_world_drop_notes(tobi_world *w, int count);
+
 /* Particles of a region: exact for boxes, from the volume for others. */
 int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r);
 /* Notes what the filling of the regions left out; refuses a fluid or solid of which nothing is left. */

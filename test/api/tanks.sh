@@ -133,7 +133,14 @@ one=s/spacing=0.025_method=dfsph
 rm $one/summary.json
 "$program" "${sweep[@]}" > out.txt 2> err.txt
 check "a killed run goes on" grep -q "resumed\|complete" $one/summary.json
-expect 1 "holds results of another scene" sweep $flat --set spacing=0.02,0.025 --set method=dfsph,wcsph --until 0.03 --out s
+longer=(sweep $flat --set spacing=0.02,0.025 --set method=dfsph,wcsph --until 0.03 --out s)
+expect 1 "s/spacing=0.02_method=dfsph has run to 0.02 s already, beyond 0.01 s" "${sweep[@]}" --until 0.01
+expect 0 "" "${longer[@]}"
+check "a longer sweep goes on with what there is" test "$(cat s/*/resolved.json | grep -c '"end_time": 0.02,')" = 4
+check "to its end" test "$(grep -c ',complete,0.03,' s/sweep.csv)" = 4
+sed 's/"end_time"/"time_step_max": 0.001, "end_time"/' $flat/scene.json > other.json
+expect 1 "holds results of another scene" sweep other.json "${longer[@]:2}"
+sweep=("${longer[@]}")
 sed -i 's/"outcome": "complete"/"outcome": "diverged"/' $one/summary.json
 "$program" "${sweep[@]}" > out.txt 2> err.txt
 check "a failed run is told" grep -q "has failed before; remove s/spacing=0.025_method=dfsph" err.txt

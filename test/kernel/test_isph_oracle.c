@@ -322,7 +322,8 @@ static double source_of(int64_t i, const sums *s)
     const double size = sqrt((double)n[0]*n[0] + (double)n[1]*n[1] + (double)n[2]*n[2]);
     const double error = view.concentration[i] - 1 + 0.2*view.spacing*size;
     const double left = view.open ? 0 : fmax(fmin(error, 0.02), -0.02);
-    const double e = fmax(error - left, view.gate[i] > 0 ? 0 : view.open ? -0.05 : -0.5);
+    const double pull = view.open ? 0.05*clip((0.06 - loss_of(s))/0.03) : 0.5;
+    const double e = fmax(error - left, view.gate[i] > 0 ? 0 : -pull);
     return s->difference + (1 - view.gate[i])*s->rest + 0.5*view.density*view.invariant[i] -
            view.density/view.dt*s->divergence + view.density*0.1*e/(view.dt*view.motion_dt);
 }

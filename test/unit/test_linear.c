@@ -217,6 +217,44 @@ static void solves_what_elimination_solves(void **state)
         }
 }
 
+/* The mean of a ring of 20 rows. */
+static void center_ring(void *user, double *y)
+{
+    double mean = 0;
+    (void)user;
+    for (int i = 0; i < 20; i++) mean += y[i]/20;
+    for (int i = 0; i < 20; i++) y[i] -= mean;
+}
+
+/* A ring and rows that are not singular, joined by nothing: no answer, but for the mean of the ring's
+   source. */
+static void takes_out_other_constants(void **state)
+{
+    static dense d;
+    double b[MOST], within[MOST];
+    (void)state;
+    fill_ring(&d, 20, 0);
+    d.n = 37;
+    for (int i = 20; i < 37; i++) d.a[i][i] = 2 + i%5;
+    for (int i = 20; i < 36; i++) d.a[i][i + 1] = d.a[i + 1][i] = -0.5;
+    finish(&d);
+    fill_source(37, b);
+    memcpy(within, b, sizeof within);
+    center_ring(NULL, within);
+    for (int solver = CG; solver <= GMRES; solver++) {
+        tobi_linear_system a = {.precondition = jacobi};
+        const tobi_linear_settings s = {.tolerance = 1e-11, .max = 400, .restart = 25};
+        assert_int_not_equal(solve_with(solver, &d, a, s, b, NULL).report.status, TOBI_LINEAR_CONVERGED);
+        a.center = center_ring;
+        const outcome o = solve_with(solver, &d, a, s, b, NULL);
+        double mean = 0;
+        for (int i = 0; i < 20; i++) mean += o.x[i]/20;
+        assert_int_equal(o.report.status, TOBI_LINEAR_CONVERGED);
+        assert_true(true_residual(&d, 0, within, o.x) <= 2e-11);
+        assert_true(fabs(mean) < 1e-12);
+    }
+}
+
 /* A start that is far off costs digits: the estimate drifts and is replaced, and the goal is reached. */
 static void replaces_a_drifted_residual(void **state)
 {
@@ -384,6 +422,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solves_what_elimination_solves),
+        cmocka_unit_test(takes_out_other_constants),
         cmocka_unit_test(replaces_a_drifted_residual),
         cmocka_unit_test(ends_where_no_digits_are_left),
         cmocka_unit_test(limits_and_stops),

@@ -175,6 +175,17 @@ static void names_that_are_taken(void **state)
     OK(tobi_world_add_probe(w, &probe, &err));
     REFUSED(tobi_world_add_probe(w, &probe, &err), TOBI_INVALID,
             "probe 'probe': probe 0 has that name already");
+    tobi_inlet_def in = tobi_default_inlet_def();
+    tobi_outlet_def out = tobi_default_outlet_def();
+    in.speed = in.normal[0] = out.normal[0] = 1;
+    in.width = in.height = out.width = out.height = in.centre[1] = in.centre[2] = 0.2;
+    in.centre[0] = 0.4;
+    out.centre[1] = out.centre[2] = 0.2;
+    OK(tobi_world_add_inlet(w, &in, &err));
+    OK(tobi_world_add_outlet(w, &out, &err));
+    REFUSED(tobi_world_add_inlet(w, &in, &err), TOBI_INVALID, "inlet 'inlet': inlet 0 has that name already");
+    REFUSED(tobi_world_add_outlet(w, &out, &err), TOBI_INVALID,
+            "outlet 'outlet': outlet 0 has that name already");
     tobi_world_destroy(w);
 }
 
@@ -199,6 +210,55 @@ static void solids_that_are_refused(void **state)
     assert_int_equal(tobi_world_solid_count(w), 0);
     OK(tobi_world_start(w, &err));
     assert_int_equal(tobi_world_count(w, TOBI_FLUID), 64);
+    tobi_world_destroy(w);
+}
+
+/* A call that fails takes back its notes, too. */
+static void notes_of_calls_that_fail(void **state)
+{
+    (void)state;
+    tobi_world *w = make_world("dfsph");
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill[2] = { tobi_default_fill_def(), tobi_default_fill_def() };
+    FILE *f = fopen("inside_out.obj", "w");
+    assert_non_null(f);
+    fputs("v 0 0 0\nv 0.3 0 0\nv 0 0.3 0\nv 0 0 0.3\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n", f);
+    fclose(f);
+    fluid.name = "ink";
+    fill[0].mesh = "inside_out.obj";
+    fill[1].mesh = "none.obj";
+    REFUSED(tobi_world_add_fluid(w, &fluid, fill, 2, &err), TOBI_NOT_FOUND, "none.obj");
+    assert_null(tobi_world_note(w, 0));
+    OK(tobi_world_add_fluid(w, &fluid, fill, 1, &err));
+    assert_non_null(strstr(tobi_world_note(w, 0), "fluid 'ink': 1 of 1 shells turned"));
+    assert_null(tobi_world_note(w, 1));
+    tobi_world_destroy(w);
+}
+
+/* So does a start, which may be tried again. */
+static void notes_of_starts_that_fail(void **state)
+{
+    (void)state;
+    tobi_world_def def = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_outlet_def out = tobi_default_outlet_def();
+    tobi_world *w;
+    def.method = "wcsph";
+    def.spacing = 0.1;
+    def.time_step = 1;
+    for (int a = 0; a < 3; a++) def.domain_max[a] = 1, fill.box_max[a] = 0.8;
+    OK(tobi_world_create(&def, NULL, &w, &err));
+    OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
+    out.centre[0] = 0.82;
+    out.centre[1] = out.centre[2] = 0.4;
+    out.radius = 0.2;
+    out.normal[0] = -1;
+    OK(tobi_world_add_outlet(w, &out, &err));
+    for (int k = 0; k < 2; k++) {
+        REFUSED(tobi_world_start(w, &err), TOBI_INVALID, "faces inwards");
+        assert_null(tobi_world_note(w, 0));
+    }
     tobi_world_destroy(w);
 }
 
@@ -440,7 +500,10 @@ int main(void)
         cmocka_unit_test(no_world_and_no_text),
         cmocka_unit_test(nothing_where_something_must_stand),
         cmocka_unit_test(names_that_are_taken),
-        cmocka_unit_test(solids_that_are_refused), cmocka_unit_test(times_that_are_none),
+        cmocka_unit_test(solids_that_are_refused),
+        cmocka_unit_test(notes_of_calls_that_fail),
+        cmocka_unit_test(notes_of_starts_that_fail),
+        cmocka_unit_test(times_that_are_none),
         cmocka_unit_test(values_that_are_none),
         cmocka_unit_test(runs),
         cmocka_unit_test(no_object_and_no_text),

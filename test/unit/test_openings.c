@@ -339,7 +339,13 @@ static void test_wrong_calls(void **state)
     bad = in;
     bad.along[0] = 1;
     refuse_inlet(w, &bad, TOBI_INVALID, "has its width along its normal; allowed is across");
-    for (int k = 0; k < TOBI_INLET_LIMIT; k++) must(tobi_world_add_inlet(w, &in, &err), &err);
+    for (int k = 0; k < TOBI_INLET_LIMIT; k++) {
+        char name[8];
+        snprintf(name, sizeof name, "in%d", k);
+        bad = in;
+        bad.name = name;
+        must(tobi_world_add_inlet(w, &bad, &err), &err);
+    }
     refuse_inlet(w, &in, TOBI_UNSUPPORTED, "more than 32 inlets");
     must(tobi_world_start(w, &err), &err);
     refuse_inlet(w, &in, TOBI_INVALID, "a started world takes no more inlets and outlets");

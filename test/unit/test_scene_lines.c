@@ -1,4 +1,4 @@
-/* Mistakes in the lines and the views of a scene, each with its place. */
+/* Mistakes in the lines, openings and views of a scene, each with its place. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -6,6 +6,8 @@
 #include <cmocka.h>
 #include <string.h>
 #include "mistakes.h"
+
+#define PATCH "\"centre\": [0, 0, 0], \"normal\": [1, 0, 0] }"
 
 static const char text[] =
     "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 0.1, \"end_time\": 1,"
@@ -21,10 +23,15 @@ static const char text[] =
     "      \"stiffness\": 1, \"point\": [0, 0, 0], \"to\": [1, 1, 1] },"
     "    { \"name\": \"b\", \"body\": \"raft\", \"stiffness\": 1,"
     "      \"point\": [0, 0, 0], \"to\": [1, 1, 1] } ],"
+    "  \"inlets\": [ { \"name\": \"a\", " PATCH ", { \"name\": \"b\", " PATCH ","
+    "    { \"name\": \"b\", " PATCH " ],"
+    "  \"outlets\": [ { \"name\": \"a\", " PATCH ", { \"name\": \"a\", " PATCH " ],"
     "  \"output\": { \"views\": [ { \"name\": \"frame\" }, { \"name\": \"v\" },"
     "    { \"name\": \"v\", \"picture\": { \"field_of\": \"solids\" } } ] } }";
 
 static const char *const expected[] = {
+    "inlets[2].name: \"b\" is already the name of inlets[1]",
+    "outlets[1].name: \"a\" is already the name of outlets[0]",
     "lines[0].body: \"pier\" is prescribed; a line holds a free or controlled body",
     "lines[0].to_body: \"ship\" is no body of the scene",
     "lines[0].weight: is 0 N/m, a catenary has a weight",
