@@ -33,6 +33,8 @@ error_t parse_argument(struct argp_state *state, int key, const char *value, con
 {
     switch (key) {
     case ARGP_KEY_ARG:
+        if (*argument && strchr(value, '='))
+            argp_error(state, "one %s only; a value is changed by --set %s", name, value);
         if (*argument) argp_error(state, "one %s only", name);
         *argument = value;
         return 0;

@@ -40,6 +40,7 @@ check "no blank at the end of a message" test "$(grep -c ' $' err.txt)" = 0
 expect 2 "--angle: '50' is not a number from -45 to 45 degrees" new sloshing --angle 50
 expect 2 "'isp' is no method of liquids; did you mean isph?" new sloshing --method isp
 expect 2 "one FAMILY and one DIR only" new sloshing --angle 5 a b
+expect 2 "one SCENE only; a value is changed by --set cfl=0.2,0.4" sweep scene.json cfl=0.2,0.4
 expect 1 "kamra is 3-D only" new kamra --dimension 2
 expect 1 "the water is higher than the tank" new static_pressure --depth 9
 expect 1 "the water is longer than the tank" new dam_break --water-length 1
