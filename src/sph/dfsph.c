@@ -497,7 +497,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);
     m->memory.low = sph_reference_low(s);
-    m->memory.open = sph_reference_open(s, m->memory.low);
+    m->memory.open = sph_reference_open(s);
     return TOBI_OK;
 }
 

@@ -12,8 +12,8 @@
 static const double COVER = 1, RAMP = 3, REST = 0.5;
 /* Of gravity: what acts besides it in water that is still at rest. */
 static const double DRIVEN = 0.3;
-/* Support radii that a look along an axis goes: farther than across a void behind a body. Spacings beside it
-   within which a particle ends it. */
+/* Support radii that a look along an axis goes before it looks up. Spacings beside it within which a particle
+   ends it. */
 static const double LOOK = 3, ASIDE = 0.75;
 enum { DROPS = 1024 };
 /* Spacings: a drop at most, however high the domain is. */
@@ -81,18 +81,16 @@ double sph_reference_low(tobi_system *s) { return find_low(s, &sph_of(s)->middle
 
 /* --- surfaces that open in the depth --------------------------------------------------------------- */
 
-/* Bits of `met`: 2 axis, and 1 more for the way back. */
-typedef struct look { double length, aside; int met; } look;
+/* A line along an axis, of a length below 0 the way back: whether particles are on it. */
+typedef struct look { int axis; double length, aside; int met; } look;
 
 static void meet(void *user, int64_t i, const double d[3])
 {
     look *l = user;
+    const double along = l->length > 0 ? d[l->axis] : -d[l->axis];
+    const double across = vec3_dot(d, d) - along*along;
     (void)i;
-    for (int a = 0; a < 3; a++) {
-        const double across = vec3_dot(d, d) - d[a]*d[a];
-        if (d[a] != 0 && fabs(d[a]) < l->length && across < l->aside*l->aside)
-            l->met |= 1 << (2*a + (d[a] < 0));
-    }
+    if (along > 0 && along < fabs(l->length) && across < l->aside*l->aside) l->met = 1;
 }
 
 static int meets_body(const tobi_system *s, const double from[3], const double to[3])
@@ -104,20 +102,39 @@ static int meets_body(const tobi_system *s, const double from[3], const double t
     return 0;
 }
 
-/* Whether nothing but air is to be seen from a particle along one of the axes. */
+/* Whether the line from x on is free of particles and bodies. */
+static int is_free(const tobi_system *s, const double x[3], int axis, double length)
+{
+    look l = { .axis = axis, .length = length, .aside = ASIDE*s->smoothing.spacing };
+    double to[3] = { x[0], x[1], x[2] };
+    to[axis] += length;
+    sph_range cells = sph_cells_around(s, x, l.aside);
+    const sph_range end = sph_cells_around(s, to, l.aside);
+    if (length > 0) cells.last[axis] = end.last[axis];
+    else cells.first[axis] = end.first[axis];
+    sph_visit(s, x, &cells, meet, &l);
+    return !l.met && !meets_body(s, x, to);
+}
+
+/* Whether the air above is to be seen from a particle: along one of the axes, and from there straight up. Not
+   beside soft solids: what a look meets there is not known. */
 static int looks_out(const tobi_system *s, int64_t i)
 {
     const tobi_double3 *p = &s->particles.position[i];
-    const double x[3] = { p->x, p->y, p->z };
-    look l = { .length = LOOK*s->smoothing.h, .aside = ASIDE*s->smoothing.spacing };
-    const sph_range cells = sph_cells_around(s, x, l.length);
-    sph_visit(s, x, &cells, meet, &l);
+    const double *down = sph_of(s)->reference.down, length = LOOK*s->smoothing.h;
+    int up = 0;
+    if (s->sim->soft.solids) return 0;
+    for (int a = 1; a < s->box.dimension; a++)
+        if (fabs(down[a]) > fabs(down[up])) up = a;
     for (int way = 0; way < 2*s->box.dimension; way++) {
         const int a = way/2;
-        double to[3] = { x[0], x[1], x[2] };
-        to[a] += way%2 ? -l.length : l.length;
-        if (l.met >> way & 1 || (!s->box.periodic[a] && !(to[a] >= 0 && to[a] <= s->box.size[a]))) continue;
-        if (!meets_body(s, x, to)) return 1;
+        const double step = way%2 ? -length : length, from = s->box.periodic[a] ? 0 : (&p->x)[a],
+                     room = step > 0 ? s->box.size[a] - from : s->box.periodic[a] ? s->box.size[a] : from;
+        double x[3] = { p->x, p->y, p->z };
+        for (int k = 1; k*length <= room && is_free(s, x, a, step); k++) {
+            x[a] += step;
+            if (is_free(s, x, up, (down[up] < 0 ? s->box.size[up] : 0) - x[up])) return 1;
+        }
     }
     return 0;
 }
@@ -128,17 +145,18 @@ static double pressed_from(const tobi_reference *w) { return w->level + w->cover
 static void keep_open(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    float *depth = sph_fields_of(&s->particles)->surface_depth;
+    const sph_fields *f = sph_fields_of(&s->particles);
     const double least = pressed_from(&sph_of(s)->reference);
     for (int64_t i = begin; i < end; i++)
-        if (!(depth[i] > least) || !looks_out(s, i)) depth[i] = 0;
+        if (f->surface_depth[i] > least && looks_out(s, i)) f->surface[i] = 1;
+        else f->surface_depth[i] = 0;
 }
 
-double sph_reference_open(tobi_system *s, double low)
+double sph_reference_open(tobi_system *s)
 {
     const tobi_reference *w = &sph_of(s)->reference;
     double middle;
-    if (!(w->push > 0 && low > pressed_from(w)) || s->sim->soft.solids) return 0;
+    if (!(w->push > 0 && sph_of(s)->lowest > pressed_from(w))) return 0;
     tobi_loop(s->sim->exec.threads, s->particles.count, 0, keep_open, s);
     return find_low(s, &middle);
 }

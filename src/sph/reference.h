@@ -10,10 +10,10 @@ void sph_reference_set(tobi_system *s, double low);
    where it has no more. After sph_measure_density, which leaves the depths in particles.surface_depth. Leaves
    their median in the state. */
 double sph_reference_low(tobi_system *s);
-/* Drop of those parts of it that lie where still water presses, but look out into the air, as under a gate
-   that is drawn up; 0 without. After sph_reference_low, which found `low`. Leaves these parts alone in
-   particles.surface_depth. */
-double sph_reference_open(tobi_system *s, double low);
+/* Drop of those parts of it that lie where still water presses, but from which the air above is to be seen,
+   as under a gate that is drawn up; 0 without. Leaves these parts alone in particles.surface_depth; nothing
+   else where still water presses stays in particles.surface. After sph_reference_low. */
+double sph_reference_open(tobi_system *s);
 /* *level, the drop of the last step, becomes that of the step at hand, by the surface of the last, `low` and
    `open`: down to `open` at once, down to `low` by `speed` (m/s, of the fastest particle or body) at most, up
    slowly. *before: the reference that pressures refer to until then. */

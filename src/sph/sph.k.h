@@ -139,16 +139,16 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     /* The kernel average of the pressure is what users read; a little of it, away from walls, damps the
        layer-by-layer mode that a collocated pressure leaves free. */
     int flagged = div < v->surface_limit;
+    /* in still water nothing is at a surface: that is how its level was chosen */
+    v->surface[i] = flagged && !(tobi_reference_pressure(&v->reference, &v->position[i].x) > 0);
     /* edges of the box, disorder and spray lower div x as well, but on all sides alike */
     float nx = w.x - k*g.x, ny = w.y - k*g.y, nz = w.z - k*g.z, n2 = nx*nx + ny*ny + nz*nz;
     int sure = div < v->open_limit &&
                (div < v->sheet_limit || n2 > v->surface_gradient*v->surface_gradient);
+    if (v->surface[i] && 4*n2 < v->surface_gradient*v->surface_gradient) v->surface[i] = SPH_SPARSE;
     totals[3] += sure;
     /* beside walls disorder and the corners of the box make a gradient as well */
     if (share > 0 && div > 0.7f*(float)v->dimension) sure = 0;
-    /* in still water nothing is at a surface, as its level was chosen, but for what has just opened */
-    v->surface[i] = flagged && (sure || !(tobi_reference_pressure(&v->reference, &v->position[i].x) > 0));
-    if (v->surface[i] && 4*n2 < v->surface_gradient*v->surface_gradient) v->surface[i] = SPH_SPARSE;
     double depth = sure && flagged ? tobi_reference_depth(&v->reference, &v->position[i].x) : 0;
     v->surface_depth[i] = (float)depth;
     totals[7] = depth > totals[7] ? depth : totals[7];

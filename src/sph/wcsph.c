@@ -209,7 +209,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
     m->memory.low = find_surface(s);
-    m->memory.open = sph_reference_open(s, m->memory.low);
+    m->memory.open = sph_reference_open(s);
     return TOBI_OK;
 }
 

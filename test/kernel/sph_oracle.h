@@ -291,7 +291,7 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         out[i][MEAN] = mean;
         out[i][DIAG] = (own[0]*own[0] + own[1]*own[1] + own[2]*own[2] + rest)/o->rho0[o->fluid[i]];
         double still = pressure_of(&o->reference, &in[i][POS], 0), drop = 0;
-        out[i][SURF] = div < o->surface_limit && (still == 0 || open == 2) ? 1 + even : 0;
+        out[i][SURF] = div < o->surface_limit && still == 0 ? 1 + even : 0;
         if (share == 0 && out[i][SURF] == 0) out[i][PRES] += o->smooth*(mean - in[i][PAYLOAD]);
         e = e > 0 ? e : out[i][SURF] > 0 ? 0 : -e;
         t[0] += e;

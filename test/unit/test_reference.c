@@ -184,6 +184,53 @@ static tobi_status spin(void *user, double t, int64_t n, const double (*rest)[3]
     return TOBI_OK;
 }
 
+/* A slab 0.2 m high sets off at 1 m/s, with its upper edge 0.2 m below the surface. The void behind it is
+   higher than the first part of a look, and no free surface. */
+static void a_void_behind_a_body_is_no_surface(void **state)
+{
+    (void)state;
+    double speed = 1;
+    int voids = 0, surfaces = 0;
+    tobi_world_def w = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_body_def slab = tobi_default_body_def();
+    tobi_world *world;
+    w.dimension = 2;
+    w.spacing = D;
+    w.threads = 1;
+    w.domain_max[0] = 0.8;
+    w.domain_max[1] = 0.7;
+    w.gravity[1] = -G, w.gravity[2] = w.domain_max[2] = 0;
+    fill.box_max[0] = 0.8;
+    fill.box_max[1] = 0.5;
+    slab.name = "slab";
+    memcpy(slab.box_min, (double[3]){ 0.3, 0.1, 0 }, sizeof slab.box_min);
+    memcpy(slab.box_max, (double[3]){ 0.34, 0.3, 0 }, sizeof slab.box_max);
+    slab.motion = jump;
+    slab.motion_rigid = 1;
+    slab.motion_user = &speed;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+    OK(tobi_world_add_body(world, &slab, &err));
+    const tobi_system *s = &world->system[0];
+    OK(tobi_world_step(world, 0, NULL, &err));
+    while (world->sim.time < 0.1) {
+        const tobi_reference *r = &sph_of(s)->reference;
+        const double before = r->level;
+        tobi_step_info info;
+        OK(tobi_world_step(world, 0, &info, &err));
+        assert_true(r->level < before + 2*fmax(info.speed_max, speed)*world->sim.dt);
+        voids += sph_of(s)->lowest > 0.2 + 0.2;
+        for (int64_t i = 0; i < s->particles.count; i++)
+            surfaces += sph_fields_of(&s->particles)->surface[i] != 0 &&
+                        s->particles.position[i].y < 0.29 && s->particles.position[i].y > 0.11;
+    }
+    printf("a void in %d steps, %d particles at a surface in it\n", voids, surfaces);
+    assert_true(voids > 0 && surfaces == 0);
+    tobi_world_destroy(world);
+}
+
 static int count_notes(tobi_world *world, const char *text)
 {
     int found = 0;
@@ -375,6 +422,7 @@ int main(void)
         cmocka_unit_test(the_first_steps_feel_the_pressure_of_rest),
         cmocka_unit_test(the_level_falls_no_faster_than_the_liquid),
         cmocka_unit_test(water_runs_out_under_a_gate),
+        cmocka_unit_test(a_void_behind_a_body_is_no_surface),
         cmocka_unit_test(water_in_gaps_presses),
         cmocka_unit_test(restless_starts_are_told),
         cmocka_unit_test(compression_is_told),
