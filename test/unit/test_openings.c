@@ -340,7 +340,7 @@ static void test_wrong_calls(void **state)
     bad.along[0] = 1;
     refuse_inlet(w, &bad, TOBI_INVALID, "has its width along its normal; allowed is across");
     for (int k = 0; k < TOBI_INLET_LIMIT; k++) {
-        char name[8];
+        char name[16];
         snprintf(name, sizeof name, "in%d", k);
         bad = in;
         bad.name = name;
