@@ -89,7 +89,7 @@ for method in ("dfsph", "isph"):
             name = f"{method}, {NAMES[implicit]}: channel of {across} d"
             case.figure(f"{name}: mean velocity over theory", speed, "1 within 0.02", abs(speed - 1) <= 0.02)
             case.state(f"{name}: steps", read_table(out/"history.csv")["step"][-1])
-            case.hold(f"{name}: within 5 % ({speed:.3f})", abs(speed - 1) <= 0.05)
+            case.hold(f"{name}: within 7 % ({speed:.3f})", abs(speed - 1) <= 0.07)
 
 RADIUS, TUBE, DEEP = 0.02, 0.08, 0.2
 STOKES = 2/9*(7800 - 1400)*9.81*RADIUS**2/100
