@@ -82,10 +82,24 @@ static tobi_status draw_up(void *user, double t, int64_t n, const double (*rest)
     return TOBI_OK;
 }
 
+/* 2-D, 0.8 m long. */
+static tobi_world_def flat_world(double height)
+{
+    tobi_world_def w = tobi_default_world_def();
+    w.dimension = 2;
+    w.spacing = D;
+    w.threads = 1;
+    w.domain_max[0] = 0.8;
+    w.domain_max[1] = height;
+    w.gravity[1] = -G;
+    w.gravity[2] = w.domain_max[2] = 0;
+    return w;
+}
+
 /* J/m of the water, 0.2 m deep, behind a gate that is drawn up so far that all of it is free at the end. */
 static double run_out(const char *method, int still_water, double speed)
 {
-    tobi_world_def w = tobi_default_world_def();
+    tobi_world_def w = flat_world(0.4);
     tobi_fluid_def fluid = tobi_default_fluid_def();
     tobi_fill_def fill = tobi_default_fill_def();
     tobi_body_def gate = tobi_default_body_def();
@@ -95,13 +109,6 @@ static double run_out(const char *method, int still_water, double speed)
     tobi_step_info info;
     dfsph.still_water = wcsph.still_water = still_water;
     w.method = method;
-    w.dimension = 2;
-    w.spacing = D;
-    w.threads = 1;
-    w.domain_max[0] = 0.8;
-    w.domain_max[1] = 0.4;
-    w.gravity[1] = -G;
-    w.gravity[2] = w.domain_max[2] = 0;
     fluid.name = "water";
     fill.box_max[0] = 0.29;
     fill.box_max[1] = 0.2;
@@ -191,17 +198,11 @@ static void a_void_behind_a_body_is_no_surface(void **state)
     (void)state;
     double speed = 1;
     int voids = 0, surfaces = 0;
-    tobi_world_def w = tobi_default_world_def();
+    tobi_world_def w = flat_world(0.7);
     tobi_fluid_def fluid = tobi_default_fluid_def();
     tobi_fill_def fill = tobi_default_fill_def();
     tobi_body_def slab = tobi_default_body_def();
     tobi_world *world;
-    w.dimension = 2;
-    w.spacing = D;
-    w.threads = 1;
-    w.domain_max[0] = 0.8;
-    w.domain_max[1] = 0.7;
-    w.gravity[1] = -G, w.gravity[2] = w.domain_max[2] = 0;
     fill.box_max[0] = 0.8;
     fill.box_max[1] = 0.5;
     slab.name = "slab";
