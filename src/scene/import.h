@@ -120,8 +120,9 @@ void tobi_import_bodies(tobi_import *im);
 /* The absolute path of a mesh that an old scene names; NULL if it is nowhere (or memory was short, which
    is remembered). Owned by the caller. */
 char *tobi_import_find_mesh(tobi_import *im, const char *path);
-/* Names an entry by the stem, or stem_2, stem_3 where another of the list has it; odd characters become
-   '_'. */
-void tobi_import_name(tobi_import *im, json_t *list, json_t *entry, const char *stem, size_t length);
+/* Names an entry by the stem, or stem_2, stem_3 where another of the two lists has it; what is no letter or
+   digit becomes '_'. */
+void tobi_import_name(tobi_import *im, const json_t *list, const json_t *other, json_t *entry,
+                      const char *stem, size_t length);
 /* Whether an object is in the list invisibleObjects. */
 int tobi_import_hides(const tobi_import *im, int object);

@@ -132,29 +132,35 @@ static void tell_free(tobi_import *im, int has_density, int has_velocity)
     if (has_velocity) tobi_import_remark(im, "velocity", "of the centre of mass at the start");
 }
 
-static int is_taken(json_t *bodies, const char *name)
+static int is_taken(const json_t *list, const char *name)
 {
     size_t i;
-    json_t *body;
-    json_array_foreach(bodies, i, body) {
-        const char *other = json_string_value(json_object_get(body, "name"));
+    json_t *entry;
+    json_array_foreach(list, i, entry) {
+        const char *other = json_string_value(json_object_get(entry, "name"));
         if (other && strcmp(other, name) == 0) return 1;
     }
     return 0;
 }
 
-void tobi_import_name(tobi_import *im, json_t *bodies, json_t *body, const char *stem, size_t length)
+void tobi_import_name(tobi_import *im, const json_t *list, const json_t *others, json_t *entry,
+                      const char *stem, size_t length)
 {
-    char clean[64], name[80];
-    if (length > sizeof clean - 1) length = sizeof clean - 1;
-    for (size_t i = 0; i < length; i++)
-        clean[i] = isalnum((unsigned char)stem[i]) || (i > 0 && stem[i] == '-') ? stem[i] : '_';
+    char clean[54], name[80];                           /* room for a number within 63 bytes */
+    if (length > sizeof clean - 1) {
+        length = sizeof clean - 1;
+        while ((stem[length] & 0xC0) == 0x80) length--;     /* whole characters of UTF-8 */
+    }
+    for (size_t i = 0; i < length; i++) {
+        const unsigned char c = (unsigned char)stem[i];
+        clean[i] = c >= 0x80 || isalnum(c) || (i > 0 && c == '-') ? stem[i] : '_';
+    }
     clean[length] = '\0';
     if (!length) strcpy(clean, "body");
     snprintf(name, sizeof name, "%s", clean);
-    for (int i = 2; is_taken(bodies, name) || strncmp(name, "fluid_", 6) == 0; i++)
+    for (int i = 2; is_taken(list, name) || is_taken(others, name) || strncmp(name, "fluid_", 6) == 0; i++)
         snprintf(name, sizeof name, "%s%s_%d", strncmp(clean, "fluid_", 6) == 0 ? "body_" : "", clean, i);
-    tobi_import_set(im, body, "name", json_string(name));
+    tobi_import_set(im, entry, "name", json_string(name));
 }
 
 /* What blocks and meshes have in common; NULL: not given. */
@@ -178,7 +184,7 @@ static void add_rigid_block(tobi_import *im, json_t *bodies, json_t *object, con
     int has_density = tobi_import_has(section, given, "density");
     if (b.dynamic) set_free(im, body, has_velocity ? b.velocity : NULL, 0, place);
     snprintf(name, sizeof name, "block_%d", b.object);
-    tobi_import_name(im, bodies, body, name, strlen(name));
+    tobi_import_name(im, bodies, NULL, body, name, strlen(name));
     set_box(im, body, &b);
     set_looks(im, body, has_density ? &b.density : NULL,
               tobi_import_has(section, given, "color") ? b.color : NULL, b.object);
@@ -345,7 +351,7 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
     for (; slash; slash = strpbrk(stem, "/\\")) stem = slash + 1;
     const char *dot = strrchr(stem, '.');
     json_t *body = json_object();
-    tobi_import_name(im, bodies, body, stem, dot ? (size_t)(dot - stem) : strlen(stem));
+    tobi_import_name(im, bodies, NULL, body, stem, dot ? (size_t)(dot - stem) : strlen(stem));
     fill_rigid_body(im, body, &b, given, mesh ? mesh : b.file ? b.file : path);
     tobi_import_set(im, body, "translation", tobi_import_vector(translation));
     const char *name = json_string_value(json_object_get(body, "name"));

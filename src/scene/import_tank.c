@@ -24,20 +24,23 @@ typedef struct tank {
     int has_box, closed;
     int cavity;                      /* 1: the domain is the hollow of the first object */
     json_t *fluids, *bodies, *probes;
+    struct object *objects;          /* object_count, in the order of input_files */
+    size_t object_count;
 } tank;
 
 /* One object's file while it is read. */
 typedef struct object {
-    tobi_source source;
+    tobi_source source;              /* without a root: the file is none, which is told */
     tobi_tank_object def;
     uint64_t given;
     size_t index;                    /* in input_files */
-    char *stem;                      /* of the file's name */
+    const char *name;                /* of the file, borrowed */
+    char *stem;                      /* of its name */
     const char *objfile;
 } object;
 
 static const tobi_place root = { 0 };
-static const tobi_place files = { &root, "input_files", 0 };
+static const tobi_place files = { &root, "input_files", 0 }, longest_step = { &root, "max_dt", 0 };
 
 int tobi_import_tank_applies(const json_t *json) { return json_object_get(json, "input_files") != NULL; }
 
@@ -129,6 +132,7 @@ static void build_setting(tank *t)
     if (json_array_size(t->probes)) tobi_import_set(im, native, "probes", json_incref(t->probes));
     json_t *output = tobi_import_set(im, native, "output", json_object());
     tobi_import_set(im, output, "interval", tobi_import_real(output_interval(t)));
+    im->no_memory |= tobi_source_add_origin(im->source, "output.interval", &longest_step) != TOBI_OK;
 }
 
 /* --- objects ------------------------------------------------------------------------------- */
@@ -149,7 +153,9 @@ static char *find_mesh(tank *t, object *o, tobi_tank_shape *shape)
     tobi_error err = { 0 };
     char *places, *mesh;
     if (!o->objfile || !*o->objfile) {
-        tobi_source_mistake(&o->source, &at, "is missing: a closed mesh, in metres");
+        const json_t *given = json_object_get(o->source.root, "objfile");
+        if (!given || json_is_string(given))          /* another type is told where keys are read */
+            tobi_source_mistake(&o->source, &at, "is missing: a closed mesh, in metres");
         return NULL;
     }
     mesh = tobi_tank_find(t->directory, o->objfile, &places);
@@ -255,7 +261,8 @@ static void add_entry(tank *t, object *o, json_t *list, const char *native,
     const tobi_place shown = { &root, o->stem, 0 }, listed = { &files, NULL, o->index };
     snprintf(path, sizeof path, "%s[%zu]", native, json_array_size(list));
     const char *name = o->def.name ? o->def.name : "";
-    tobi_import_name(im, list, entry, name, strlen(name));
+    tobi_import_name(im, list, list == t->fluids ? t->bodies : list == t->bodies ? t->fluids : NULL, entry,
+                     name, strlen(name));
     im->no_memory |= json_array_append(list, entry) != 0;
     im->source = &o->source;
     tobi_import_note(im, &tobi_tank_object_section, o->source.root, &shown, path, "");
@@ -269,9 +276,10 @@ static void add_entry(tank *t, object *o, json_t *list, const char *native,
 static void sort_object(tank *t, object *o)
 {
     static const char *const types[] = { "Fluid", "RigidBody", "probe" };
-    const tobi_place at = { &root, "type", 0 };
+    const tobi_place at = { &root, "type", 0 }, leave = { &root, "ignore", 0 };
     const char *type = o->def.type ? o->def.type : "", *near;
     json_t *ignore = json_object_get(o->source.root, "ignore");
+    if (ignore && !json_is_boolean(ignore)) tobi_source_mistake(&o->source, &leave, "must be true or false");
     if (json_is_true(ignore)) {
         const tobi_place shown = { &root, o->stem, 0 };
         tobi_import_note(&t->im, &tobi_tank_object_section, o->source.root, &shown, "nothing", "");
@@ -285,7 +293,7 @@ static void sort_object(tank *t, object *o)
     }
 }
 
-static void read_object(tank *t, object *o, const char *name)
+static void read_object(tank *t, object *o)
 {
     tobi_import *im = &t->im;
     tobi_source *setting = im->source;
@@ -293,75 +301,65 @@ static void read_object(tank *t, object *o, const char *name)
     im->source = im->binder.source = &o->source;
     o->given = tobi_import_read(im, &tobi_tank_object_section, bound, &root, &o->def);
     im->source = im->binder.source = setting;
-    o->objfile = json_string_value(json_object_get(o->source.root, "objfile"));
-    const char *dot = strrchr(name, '.');
-    o->stem = strndup(name, dot ? (size_t)(dot - name) : strlen(name));
+    const char *dot = strrchr(o->name, '.');
+    o->stem = strndup(o->name, dot ? (size_t)(dot - o->name) : strlen(o->name));
     if (o->stem) sort_object(t, o);
     im->no_memory |= !o->stem;
     free(o->stem);
     json_decref(bound);
 }
 
-/* Looks into the file at input_files[index]. */
-static void open_object(tank *t, size_t index, const json_t *entry)
+/* Parses the file at input_files[index]. */
+static void open_object(tank *t, object *o, const json_t *entry)
 {
     tobi_source *setting = t->im.source;
-    const tobi_place at = { &files, NULL, index };
-    const char *name = json_string_value(entry);
+    const tobi_place at = { &files, NULL, o->index };
     char *path = NULL, *text = NULL;
     size_t size;
     tobi_error err = { 0 };
-    object o = { .index = index };
-    if (!name || !*name) {
+    o->name = json_string_value(entry);
+    if (!o->name || !*o->name) {
         tobi_source_mistake(setting, &at, "must be the name of an object's file, beside this one");
         return;
     }
-    if (asprintf(&path, "%s/%s", t->directory, name) < 0) {
+    if (asprintf(&path, "%s/%s", t->directory, o->name) < 0) {
         t->im.no_memory = 1;
         return;
     }
     tobi_status status = tobi_plain_read(path, "object", TOBI_SOURCE_LIMIT, &text, &size, &err);
     if (status != TOBI_OK) tobi_source_mistake(setting, &at, "%s", err.text);
-    if (status == TOBI_OK) {
-        status = tobi_source_parse(&o.source, path, text, size, setting->report, &err);
-        t->im.no_memory |= status == TOBI_NO_MEMORY;
-        if (status == TOBI_OK) read_object(t, &o, name);
-        tobi_source_clear(&o.source);
-    }
+    else status = tobi_source_parse(&o->source, path, text, size, setting->report, &err);
+    t->im.no_memory |= status == TOBI_NO_MEMORY;
+    if (status != TOBI_OK) tobi_source_clear(&o->source);
+    else o->objfile = json_string_value(json_object_get(o->source.root, "objfile"));
     free(text);
     free(path);
 }
 
-/* The shape of a body that the setting names; 0 if it is none, or wrong, which is told later. */
-static int look_at_body(const tank *t, const json_t *entry, tobi_tank_shape *shape)
+/* The shape of a body; 0 if the object is none, or wrong, which is told later. */
+static int look_at_body(const tank *t, const object *o, tobi_tank_shape *shape)
 {
-    char *path = NULL, *places = NULL, *mesh = NULL;
-    tobi_error err;
-    if (!json_is_string(entry) || asprintf(&path, "%s/%s", t->directory, json_string_value(entry)) < 0)
-        return 0;
-    json_t *json = json_load_file(path, 0, NULL);
+    const json_t *json = o->source.root;
     const char *type = json_string_value(json_object_get(json, "type"));
-    const char *file = json_string_value(json_object_get(json, "objfile"));
-    if (file && type && strcmp(type, "RigidBody") == 0 && !json_is_true(json_object_get(json, "ignore")))
-        mesh = tobi_tank_find(t->directory, file, &places);
+    char *mesh = NULL, *places = NULL;
+    tobi_error err;
+    if (o->objfile && type && strcmp(type, "RigidBody") == 0 &&
+        !json_is_true(json_object_get(json, "ignore")))
+        mesh = tobi_tank_find(t->directory, o->objfile, &places);
     const int found = mesh && tobi_tank_look(mesh, shape, &err) == TOBI_OK;
     free(places);
     free(mesh);
-    free(path);
-    json_decref(json);
     return found;
 }
 
 /* The sides of the domain are the walls if the first object is a box around a box and no other body reaches
    out of it: bodies stay in the domain. */
-static void choose_walls(tank *t, const json_t *list)
+static void choose_walls(tank *t)
 {
     tobi_tank_shape wall, other;
-    size_t i;
-    json_t *entry;
-    t->cavity = look_at_body(t, json_array_get(list, 0), &wall) && wall.tank;
-    json_array_foreach(list, i, entry) {
-        if (i == 0 || !t->cavity || !look_at_body(t, entry, &other)) continue;
+    t->cavity = look_at_body(t, &t->objects[0], &wall) && wall.tank;
+    for (size_t i = 1; i < t->object_count && t->cavity; i++) {
+        if (!look_at_body(t, &t->objects[i], &other)) continue;
         const double tiny = 1e-6*(wall.high[0] - wall.low[0]);
         for (int a = 0; a < 3; a++)
             t->cavity &= other.low[a] >= wall.cavity_low[a] - tiny &&
@@ -379,8 +377,19 @@ static void read_objects(tank *t)
         return;
     }
     const int64_t before = tobi_report_total(t->im.source->report);
-    choose_walls(t, list);
-    json_array_foreach(list, i, entry) open_object(t, i, entry);
+    t->objects = calloc(json_array_size(list), sizeof *t->objects);
+    t->im.no_memory |= !t->objects;
+    if (!t->objects) return;
+    t->object_count = json_array_size(list);
+    json_array_foreach(list, i, entry) {
+        t->objects[i].index = i;
+        open_object(t, &t->objects[i], entry);
+    }
+    choose_walls(t);
+    for (i = 0; i < t->object_count; i++) {
+        if (t->objects[i].source.root) read_object(t, &t->objects[i]);
+        tobi_source_clear(&t->objects[i].source);
+    }
     if (json_array_size(t->fluids) == 0 && tobi_report_total(t->im.source->report) == before)
         tobi_source_mistake(t->im.source, &files, "names no object of type Fluid");
 }
@@ -422,6 +431,7 @@ tobi_status tobi_import_translate_tank(tobi_source *source, tobi_texts *texts, c
     if (t.im.no_memory || texts->failed || !t.im.native || !t.fluids || !t.bodies || !t.probes)
         status = TOBI_NO_MEMORY;
     if (status == TOBI_OK) status = tobi_import_finish(&t.im, table);
+    free(t.objects);
     json_decref(t.fluids);
     json_decref(t.bodies);
     json_decref(t.probes);

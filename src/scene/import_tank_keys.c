@@ -43,7 +43,7 @@ static const tobi_old_key setting_keys[] = {
 #define O(m) IN(tobi_tank_object, m)
 static const tobi_old_key object_keys[] = {
     { K("name"), O(name), TEXT("text"), BECOMES(".name"), NEEDED,
-      SAY("of the object; odd characters become _") },
+      SAY("of the object; spaces and signs become _") },
     { K("type"), O(type), TEXT("text"), NEEDED,
       SAY("Fluid, RigidBody or probe; now an entry of fluids, bodies or probes") },
     { K("objfile"), O(file), TEXT("text"), BECOMES(".mesh"),

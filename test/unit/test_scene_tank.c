@@ -260,6 +260,42 @@ static void the_written_scene_is_the_same(void **state)
     assert_int_equal(unlink("case/scene.json"), 0);
 }
 
+/* An object's file is read as every scene is: with a byte order mark, comments, lines of Windows. */
+static void the_tank_may_have_a_mark_and_comments(void **state)
+{
+    (void)state;
+    put("case/tank.json", "\357\273\277{ \"name\": \"tank\", # the hollow\r\n\"type\": \"RigidBody\",\r\n"
+        "\"objfile\": \"C:\\\\obj\\\\original\\\\tank.obj\" }\r\n");
+    tobi_scene *scene = load();
+    assert_vector(tobi_scene_world_def(scene)->domain_max, 1, 0.2, 0.6);
+    assert_int_equal(scene->body_count, 1);
+    tobi_scene_free(scene);
+    put_objects();
+}
+
+/* Japanese names stay; fluids and bodies whose names become the same get numbers. */
+static void odd_names_stay_apart(void **state)
+{
+    (void)state;
+    static const char letter[] = "\346\260\264";
+    char name[200] = "", text[400];
+    put("case/water.json", "{ \"name\": \"a (b)\", \"type\": \"Fluid\",\n"
+        "\"objfile\": \"original/water.obj\" }");
+    put("case/gate.json", "{ \"name\": \"a [b]\", \"type\": \"RigidBody\",\n"
+        "\"objfile\": \"original/gate.obj\" }");
+    for (int k = 0; k < 30; k++) strcat(name, letter);
+    snprintf(text, sizeof text,
+        "{ \"name\": \"%s\", \"type\": \"probe\", \"location\": [1, 0.1, 0.02] }", name);
+    put("case/sensor1.json", text);
+    tobi_scene *scene = load();
+    assert_string_equal(scene->fluids[0].def.name, "a__b_");
+    assert_string_equal(scene->bodies[0].def.name, "a__b__2");
+    name[17*3] = '\0';                 /* as many whole letters as fit with a number */
+    assert_string_equal(scene->probes[0].name, name);
+    tobi_scene_free(scene);
+    put_objects();
+}
+
 /* Longest ending first; a path that is there as it stands goes before all. */
 static void where_meshes_are_looked_for(void **state)
 {
@@ -320,11 +356,25 @@ static void mistakes_are_told_in_their_files(void **state)
     EXPECT("case/gate.json",
         "{ \"name\": \"gate\", \"type\": \"RigidBody\", \"objfile\": \"original/gate.obj\",\n"
            "\"inactivate\": [0, 1], \"inactive\": [0, 1] }", "says the same as inactivate");
+    EXPECT("case/gate.json", "{ \"name\": \"gate\", \"type\": \"RigidBody\", \"objfile\": 3 }",
+           "gate.json:1:51: objfile: is a number, must be a text");
+    EXPECT("case/gate.json", "{ \"name\": \"gate\", \"type\": \"RigidBody\",\n"
+           "\"objfile\": \"original/gate.obj\", \"ignore\": \"yes\" }",
+           "gate.json:2:43: ignore: must be true or false");
     EXPECT("case/sensor1.json", "{ \"name\": \"s\", \"type\": \"probe\", \"locaton\": [0, 0, 0] }",
            "locaton: unknown key; did you mean \"location\"?",
                "location: is missing: where the sensor sits");
     EXPECT("case/sensor1.json", "{ \"name\": \"s\", \"type\": \"probe\", \"location\": [5, 0, 0] }",
            "setting.json:14:9: input_files[3] (here probes[0].position): is 5 m in x");
+    EXPECT("case/setting.json", "{ \"particle_spacing\": 0.02, \"max_dt\": 1e-300, \"end_time\": 1e-300,\n"
+           "\"input_files\": [ \"tank.json\", \"water.json\" ] }",
+           "setting.json:1:39: max_dt (here time_step_max): is 1e-300",
+           "setting.json:1:39: max_dt (here output.interval): is 1e-299");
+    assert_int_equal(mkfifo("case/pipe", 0600), 0);
+    EXPECT("case/setting.json", "{ \"particle_spacing\": 0.02, \"max_dt\": 0.001, \"end_time\": 2,\n"
+           "\"input_files\": [ \"tank.json\", \"water.json\", \"pipe\" ] }",
+           "pipe: is a pipe; only plain files");
+    assert_int_equal(unlink("case/pipe"), 0);
     EXPECT("case/setting.json", "{ \"particle_spacing\": 0.02, \"max_dt\": 0.001, \"end_time\": 2,\n"
            "\"input_files\": [] }", "must be a list of 1 to 1024 names");
     EXPECT("case/setting.json", "{ \"particle_spacing\": 0.02, \"max_dt\": 0.001, \"end_time\": 2,\n"
@@ -363,6 +413,7 @@ int main(void)
         cmocka_unit_test(other_shapes_stay_meshes), cmocka_unit_test(the_written_scene_is_the_same),
         cmocka_unit_test(where_meshes_are_looked_for),
             cmocka_unit_test(mistakes_are_told_in_their_files),
+        cmocka_unit_test(the_tank_may_have_a_mark_and_comments), cmocka_unit_test(odd_names_stay_apart),
         cmocka_unit_test(the_steps_may_end_the_run),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
