@@ -92,6 +92,7 @@ typedef struct tobi_method {
     int planes;                                                  /* 1: it knows planes in the domain */
     double density_ratio;                                        /* largest over least of its fluids */
     int fills_pipes;                             /* 1: inlets and outlets may leave no free surface */
+    int damps_waves;                             /* 1: waves lose height on the way                  */
     int rough_forces;                            /* 1: of a liquid on bodies and on solids they are not the
                                                     opposite of what the liquid feels, to a few per cent */
     /* Smoothing kernel and support radius that the parameters ask for; driven: something is moved in a

@@ -572,6 +572,7 @@ const tobi_method tobi_dfsph = {
     .name = "dfsph",
     .doc = "Divergence-free SPH for water: incompressible, free surface, walls and moving bodies.",
     .density_ratio = 10,
+    .damps_waves = 1,
     .params = &tobi_dfsph_table,
     .fields = &sph_field_list,
     .outputs = sph_outputs,

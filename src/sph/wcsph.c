@@ -276,6 +276,7 @@ const tobi_method tobi_wcsph = {
     .name = "wcsph",
     .doc = "Weakly compressible SPH: pressure by the Tait equation, short steps, no solver.",
     .density_ratio = 2,
+    .damps_waves = 1,
     .params = &tobi_wcsph_table,
     .fields = &sph_field_list,
     .outputs = sph_outputs,

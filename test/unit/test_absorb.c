@@ -1,5 +1,5 @@
 /* Pistons that absorb: the law's numbers, the same bits after a restart, a wave that comes back, what is
-   refused. */
+   told and refused. */
 #include "calls.h"
 #include "rigid/waves.h"
 #include "scene/scene.h"
@@ -110,6 +110,21 @@ static void a_damaged_state_is_refused(void **state)
     end(t);
 }
 
+static void methods_that_damp_waves_are_told(void **state)
+{
+    (void)state;
+    static const char *const methods[] = { "dfsph", "wcsph", "isph", "eisph" };
+    for (int k = 0; k < 4; k++) {
+        tank t = make(methods[k], WATER);
+        int told = 0;
+        OK(tobi_world_start(t.w, &err));
+        for (int n = 0; tobi_world_note(t.w, n); n++)
+            told += !!strstr(tobi_world_note(t.w, n), "its waves come out too low");
+        assert_int_equal(told, k < 2);
+        end(t);
+    }
+}
+
 static void solids_do_not_know_it(void **state)
 {
     (void)state;
@@ -125,6 +140,7 @@ int main(void)
         cmocka_unit_test(the_law_has_its_limits),
         cmocka_unit_test(a_restart_has_the_same_bits),
         cmocka_unit_test(a_damaged_state_is_refused),
+        cmocka_unit_test(methods_that_damp_waves_are_told),
         cmocka_unit_test(solids_do_not_know_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
