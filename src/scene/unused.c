@@ -13,7 +13,8 @@ typedef enum reader {
     RISE,            /* sand whose friction rises with its flow   */
     SLOPE,           /* solids that break; sand always has one    */
     FLIP, XPIC,      /* ways to the grid and back                 */
-    GMRES            /* the solver of isph                        */
+    GMRES,           /* the solver of isph                        */
+    SWEEPS           /* several of eisph: one is the same by both */
 } reader;
 
 #define UNMOVED "is for free and controlled bodies, this one is prescribed"
@@ -50,6 +51,8 @@ static const struct {
     { "mlsmpm", "flip", FLIP, "is for \"transfer\": \"flip\"" },
     { "mlsmpm", "xpic_order", XPIC, "is for \"transfer\": \"xpic\"" },
     { "isph", "restart", GMRES, "is for \"solver\": \"gmres\"" },
+    { "eisph", "iteration", SWEEPS, "is pseudo-time, and one sweep of that is one of jacobi; allowed "
+                                    "with it are \"sweeps\": 2 or more, or 0" },
 };
 enum { KEYS = sizeof keys/sizeof *keys };
 
@@ -66,6 +69,7 @@ static int is_there(const tobi_scene *scene, const void *def, reader who)
     const tobi_solid_def *solid = def;
     const tobi_mlsmpm_def *solids = find_def(scene, "mlsmpm");
     const tobi_isph_def *isph = find_def(scene, "isph");
+    const tobi_eisph_def *eisph = find_def(scene, "eisph");
     tobi_method_info method;
     tobi_method_describe(scene->world.method, &method);
     switch (who) {
@@ -77,7 +81,8 @@ static int is_there(const tobi_scene *scene, const void *def, reader who)
     case SLOPE: return !tobi_solid_uses(solid->model, "strength") || solid->strength > 0;
     case FLIP: return !solids || solids->transfer == TOBI_FLIP;
     case XPIC: return !solids || solids->transfer == TOBI_XPIC;
-    default: return !isph || isph->solver == TOBI_GMRES;
+    case GMRES: return !isph || isph->solver == TOBI_GMRES;
+    default: return !eisph || eisph->iteration != TOBI_ITERATION_PSEUDO_TIME || eisph->sweeps != 1;
     }
 }
 

@@ -21,7 +21,7 @@ static void choose_smoothing(const void *def, int stirred, int *shape, double *s
     const tobi_eisph_def *d = def;
     (void)stirred;
     *shape = d->kernel;
-    *support = d->support > 0 ? d->support : 2.5;
+    *support = d->support > 0 ? d->support : tobi_smoothing_support(d->kernel, 2.5);
 }
 
 static tobi_status create(tobi_system *s, tobi_error *err)

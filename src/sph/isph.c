@@ -1,9 +1,8 @@
 /* Incompressible SPH: one Poisson equation per step, with a compact Laplacian, for the pressure that makes
    the velocity free of divergence (Cummins & Rudman 1999). Walls are mirrors, made pair by pair. Volume is
    held by a small source of pressure, evenness by a shift of positions; neither gives speed to particles.
-   One list serves a step: that
-   of the middle of the way, or of its begin (decisions 46, 66). Drawback: what divergence and
-   Laplacian do not share stays in the velocity, some 5e-4 of a volume per step. */
+   One list serves a step: that of the middle of the way, or of its begin (decisions 46, 66). Drawback: what
+   divergence and Laplacian do not share stays in the velocity, some 5e-4 of a volume per step. */
 #include "sph/boundary.h"
 #include "sph/isph.h"
 #include "sph/isph_fields.h"

@@ -111,8 +111,9 @@ static const tobi_param isph_rows[] = {
              "shift along it only." },
     { .key = "pressure_gradient", CHOICE("difference|plain|symmetric", 3),
       AT(tobi_isph_def, pressure_gradient),
-      .doc = "Gradient of the pressure, sums over p_j - p_i, p_j, or p_i/rho^2 + p_j/rho^2. The last keeps "
-             "momentum, with renormalised off, and asks for shorter steps." },
+      .doc = "Gradient of the pressure, sums over p_j - p_i, p_j, or p_i/rho^2 + p_j/rho^2. The last asks "
+             "for renormalised off and shorter steps; without a free surface and with shifting off it keeps "
+             "momentum to rounding." },
     { .key = "renormalised", BOOL, AT(tobi_isph_def, renormalised), .def = { 1 },
       .doc = "Correct that gradient by the inverse of the moments (grad_corr_M): that of a linear pressure "
              "is then exact." },
@@ -154,8 +155,8 @@ static const tobi_param eisph_rows[] = {
              "steps. Automatic (0) takes as many as the step of the motion needs." },
     { .key = "iteration", CHOICE("jacobi|pseudo-time", 2), AT(tobi_eisph_def, iteration),
       .doc = "jacobi: each pressure from those of its neighbours. pseudo-time: artificial "
-             "compressibility, with sound that is damped as fast as it can be; n sweeps allow 0.7 n "
-             "times the step, those of jacobi sqrt(n) times." },
+             "compressibility, with sound that is damped as fast as it can be; n sweeps (2 or more, "
+             "or automatic) allow 0.7 n times the step, those of jacobi sqrt(n) times." },
     { .key = "sound_speed", REAL, AT(tobi_eisph_def, sound_speed), RANGE(1e-6, TOBI_SPEED_LIMIT),
       .unit = "m/s", .text = "automatic",
       .doc = "Speed at which pressure spreads. Automatic is ten times the fastest flow, or fall over the "

@@ -110,8 +110,8 @@ static void check_isph(const tobi_rules *r, const tobi_world_def *d, const tobi_
         tell(r, &why, "isph.volume_error");
     }
     if (m->pressure_gradient == TOBI_SYMMETRIC_SUM && m->renormalised) {
-        tobi_fail(&why, TOBI_INVALID, "is symmetric, so that pairs keep momentum, and isph.renormalised "
-                  "undoes that; allowed with it are difference and plain");
+        tobi_fail(&why, TOBI_INVALID, "is symmetric, so that forces of pairs are opposite, and "
+                  "isph.renormalised undoes that; allowed with it are difference and plain");
         tell(r, &why, "isph.pressure_gradient");
     }
 }

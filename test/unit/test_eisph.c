@@ -1,6 +1,8 @@
 /* What eisph promises at rest, of its step, and of bodies that move by forces. */
 #include "tobiuo/tobiuo.h"
 #include "calls.h"
+#include "core/smoothing.k.h"
+#include "sph/isph.h"
 #include <math.h>
 #include <cmocka.h>
 
@@ -105,12 +107,28 @@ static void a_light_body_answers_the_sweeps(void **state)
     tobi_world_destroy(world);
 }
 
+/* Kernels that fall off sooner get a wider support, as by isph. */
+static void the_support_follows_the_kernel(void **state)
+{
+    (void)state;
+    for (int kernel = 0; kernel < TOBI_SHAPES; kernel++) {
+        tobi_isph_def solved = tobi_default_isph_def();
+        tobi_eisph_def swept = tobi_default_eisph_def();
+        int shape[2];
+        double support[2];
+        solved.kernel = swept.kernel = kernel;
+        tobi_isph.smoothing(&solved, 0, &shape[0], &support[0]);
+        tobi_eisph.smoothing(&swept, 0, &shape[1], &support[1]);
+        assert_true(shape[1] == kernel && support[1] == support[0]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pool_stays_at_rest),
         cmocka_unit_test(sweeps_allow_longer_steps),
-        cmocka_unit_test(a_light_body_answers_the_sweeps),
+        cmocka_unit_test(a_light_body_answers_the_sweeps), cmocka_unit_test(the_support_follows_the_kernel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
