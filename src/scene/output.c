@@ -122,10 +122,10 @@ static void check_view(const tobi_scene *scene, tobi_source *source, const tobi_
 {
     tobi_place picture = { place, "picture", 0 }, follow = { &picture, "follow", 0 };
     tobi_place field = { &picture, "field", 0 }, field_of = { &picture, "field_of", 0 };
-    tobi_place camera = { place, "camera", 0 }, target = { &camera, "look_at", 0 };
+    tobi_place camera = { place, "camera", 0 }, angle = { &camera, "angle", 0 };
     if (view->angle > 0 && scene->world.dimension == 3 &&
         memcmp(view->position, view->look_at, sizeof view->look_at) == 0)
-        tobi_source_mistake(source, &target, "is the camera's own position");
+        tobi_source_mistake(source, &angle, "needs a camera.position that is not camera.look_at");
     check_camera(source, view, &camera);
     if (view->field) check_names(scene, source, &field, view->field);
     check_field_of(scene, source, &field_of, view->field_of);

@@ -2,7 +2,9 @@
    Drawback: a mistake is told by its path, without a line. */
 #define _GNU_SOURCE 1
 #include "scene/override.h"
+#include "scene/parts.h"
 #include "scene/spelling.h"
+#include "tobiuo/scene.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -130,10 +132,63 @@ static int settle_step(tobi_source *source, const char *text, json_t *node, json
     return 0;
 }
 
+/* Whether what is missing at step `at` would be a list: the path has a number behind it, or the scene knows a
+   list of that name. Lists are not made: their entries need more than one value. */
+static int wants_list(const json_t *steps, size_t at)
+{
+    tobi_part part;
+    if (json_is_integer(json_array_get(steps, at + 1))) return 1;
+    for (int i = 0; at == 0 && tobi_part_at(i, &part); i++)
+        if (part.form == TOBI_PART_LIST && strcmp(part.owner, "world") == 0 &&
+            strcmp(part.key, json_string_value(json_array_get(steps, at))) == 0) return 1;
+    return 0;
+}
+
+/* "there is no list "fluid"; did you mean "fluids"?", from the keys that are there. */
+static void refuse_list(tobi_source *source, const char *text, json_t *object, const char *name)
+{
+    enum { KEYS = 64 };
+    const char *keys[KEYS], *key;
+    size_t count = 0;
+    json_t *value;
+    json_object_foreach(object, key, value)
+        if (json_is_array(value) && count < KEYS) keys[count++] = key;
+    const char *near = tobi_suggest(name, keys, count);
+    tobi_report_add(source->report, 0, "--set %s: there is no list \"%s\"%s%s%s", text, name,
+                    near ? "; did you mean \"" : "", near ? near : "", near ? "\"?" : "");
+}
+
 static json_t *get_child(json_t *node, const json_t *step)
 {
     return json_is_object(node) ? json_object_get(node, json_string_value(step))
                                 : json_array_get(node, (size_t)json_integer_value(step));
+}
+
+/* Forgets the steps behind `at`. */
+static void cut_steps(json_t *steps, size_t at)
+{
+    while (json_array_size(steps) > at + 1) json_array_remove(steps, json_array_size(steps) - 1);
+}
+
+/* Puts {rest of the path: value} at the key `at` of an object that has none; takes the value over. 0 after a
+   mistake. The steps then end with that key: all below it comes from here. */
+static int make_objects(tobi_source *source, const char *text, json_t *object, json_t *steps, size_t at,
+                        json_t *value)
+{
+    for (size_t i = at; i + 1 < json_array_size(steps); i++)
+        if (wants_list(steps, i)) {
+            refuse_list(source, text, i == at ? object : NULL, json_string_value(json_array_get(steps, i)));
+            json_decref(value);
+            return 0;
+        }
+    for (size_t i = json_array_size(steps) - 1; i > at; i--) {
+        json_t *outer = json_object();
+        json_object_set_new(outer, json_string_value(json_array_get(steps, i)), value);
+        value = outer;
+    }
+    json_object_set_new(object, json_string_value(json_array_get(steps, at)), value);
+    cut_steps(steps, at);
+    return 1;
 }
 
 /* Puts value at the end of the path; takes the value over. */
@@ -153,10 +208,7 @@ static int put_value(tobi_source *source, const char *text, json_t *steps, json_
             break;
         }
         json_t *child = get_child(node, step);
-        if (!child) {
-            child = json_object();
-            json_object_set_new(node, json_string_value(step), child);
-        }
+        if (!child) return make_objects(source, text, node, steps, i, value);
         node = child;
     }
     return 1;

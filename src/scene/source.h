@@ -18,7 +18,7 @@ enum { TOBI_PATH_TEXT = 256, TOBI_SOURCE_LIMIT = 16*1024*1024 };
 /* Values that came from the command line and not from the file. */
 typedef struct tobi_override {
     char *text;                    /* "path=value", owned             */
-    json_t *steps;                 /* list of keys and indices        */
+    json_t *steps;                 /* list of keys and indices, to the first that was not there before */
 } tobi_override;
 
 /* A part of a translated scene: mistakes found in it are told at the old key. */

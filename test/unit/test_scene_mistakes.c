@@ -396,7 +396,7 @@ static void boxes_colours_and_the_camera(void **state)
           { "s.json:10:23: bodies[1].box: ", "must have two corners, min and max" },
           { "s.json:11:1: bodies[2]: ", "it has several" },
           { "s.json:12:9: bodies[2].mesh: ", "cannot find" },
-          { "s.json:14:12: output.camera.look_at: ", "is the camera's own position" },
+          { "s.json:14:32: output.camera.angle: ", "needs a camera.position that is not" },
           { "s.json:15:24: output.picture.follow: ", "\"d\" is no body of the scene" },
           { "s.json:15:38: output.picture.field: ", "there is no field \"velocty\"" });
 }
@@ -404,21 +404,12 @@ static void boxes_colours_and_the_camera(void **state)
 static void overrides_name_themselves(void **state)
 {
     (void)state;
-    const char *overrides[] = { "spacing=-1",
-                                "nonsense",
-                                "fluids[3].density=1",
-                                "fluids.oil.density=1",
-                                "fluids.water.fill.zero.velocity=[1, 0, 0]",
-                                "fluids.water.fill.1.velocity=[1, 0, 0]",
-                                "spacing.deep=1",
-                                "dfsph.suport=3",
-                                "fluids.water.viscosity=thick",
-                                "[0]=1",
-                                "a..b=1",
-                                "=1",
-                                "fluids[=1",
-                                "method=\xFF",
-                                NULL };
+    const char *overrides[] = {
+        "spacing=-1", "nonsense", "fluids[3].density=1", "fluids.oil.density=1",
+        "fluids.water.fill.zero.velocity=[1, 0, 0]", "fluids.water.fill.1.velocity=[1, 0, 0]",
+        "spacing.deep=1", "dfsph.suport=3", "fluids.water.viscosity=thick", "[0]=1", "a..b=1", "=1",
+        "fluids[=1", "method=\xFF", "solids[0].x=1", "fluid[0].x=1", "a.b[0].c=1", "lines.rope.x=1",
+        "output.camra.angle=9", "output.camera.angle=9", NULL };
     const expected lines[] = {
         { "--set nonsense: ", "must be path=value" },
         { "--set fluids[3].density=1: ", "there is no entry [3], the list has 1" },
@@ -432,9 +423,15 @@ static void overrides_name_themselves(void **state)
         { "--set =1: ", "must be path=value" },
         { "--set fluids[=1: ", "must be path=value" },
         { "--set method=\xFF: ", "the value is not UTF-8" },
+        { "--set solids[0].x=1: ", "there is no list \"solids\"" },
+        { "--set fluid[0].x=1: ", "there is no list \"fluid\"; did you mean \"fluids\"?" },
+        { "--set a.b[0].c=1: ", "there is no list \"b\"" },
+        { "--set lines.rope.x=1: ", "there is no list \"lines\"" },
         { "--set spacing=-1: spacing: ", "is -1, allowed is 1e-7 to 1e5 m" },
         { "--set dfsph.suport=3: dfsph.suport: ", "did you mean \"support\"?" },
         { "--set fluids.water.viscosity=thick: fluids[0].viscosity: ", "is the text \"thick\"" },
+        { "--set output.camra.angle=9: output.camra: unknown key", "did you mean \"camera\"?" },
+        { "--set output.camera.angle=9: output.camera.angle: ", "needs a camera.position" },
     };
     check_report(make(spacing, box, ""), overrides, lines, sizeof lines/sizeof lines[0]);
 }
