@@ -59,6 +59,19 @@ static double find_moment(const tobi_rigid *r, const tobi_joint *j)
     return sum + r->mass*vec3_dot(lever, lever);
 }
 
+/* A start that the joint does not allow would be dropped without a word. */
+static tobi_status check_start(const tobi_body_def *def, int kind, const char *key, const double given[3],
+                               const double has[3], tobi_error *err)
+{
+    const double size = vec3_dot(given, given);
+    if (!(vec3_distance2(given, has) > 1e-12*size) || !(size > 0)) return TOBI_OK;
+    return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s' cannot start with that %s: its %s leaves "
+                                      "it %s alone", def->name ? def->name : "", key, kinds[kind],
+                                      kind == TOBI_JOINT_HINGE ? "the turn about the axis, set off by "
+                                      "angular_velocity," : "the way along the axis, set off by velocity,"),
+                       "%s", key);
+}
+
 tobi_status tobi_joint_init(tobi_rigid *r, const tobi_body_def *def, const double lower[3], int dimension,
                             tobi_error *err)
 {
@@ -82,7 +95,8 @@ tobi_status tobi_joint_init(tobi_rigid *r, const tobi_body_def *def, const doubl
     j->damping = hinge ? def->hinge_damping : def->guide_damping;
     TOBI_TRY(check_stops(def, j->kind, j->lower, j->upper, err));
     tobi_joint_set_rate(r, vec3_dot(j->axis, hinge ? def->angular_velocity : def->velocity));
-    return TOBI_OK;
+    TOBI_TRY(check_start(def, j->kind, "velocity", def->velocity, r->velocity, err));
+    return check_start(def, j->kind, "angular_velocity", def->angular_velocity, r->angular_velocity, err);
 }
 
 /* --- the coordinate ---------------------------------------------------------------------------- */

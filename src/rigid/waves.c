@@ -116,6 +116,9 @@ static tobi_status check(const tobi_wave_maker_def *d, tobi_error *err)
                          "greater than 0; given are %g m and %g m/s2", d->depth, d->gravity);
     if (d->absorb && d->flap)
         return tobi_fail(err, TOBI_UNSUPPORTED, "a flap does not absorb; a piston does");
+    if (d->absorb_period > 0 && !d->absorb)
+        return tobi_fail(err, TOBI_INVALID, "absorb_period is for a piston that absorbs; absorb is "
+                         "false");
     if (d->absorb && kinds == 0) return TOBI_OK;
     if (kinds != 1)
         return tobi_fail(err, TOBI_INVALID, "a wave maker makes one kind of waves: regular, solitary or "

@@ -106,7 +106,9 @@ static void check_rate(const one *o)
     const double step = o->scene->world.time_step, steps = step > 0 ? 1/step : INFINITY;
     const double rate = d->rate > 0 ? d->rate : steps;
     const tobi_place at = { &o->entry, "rate", 0 }, filter = { &o->entry, "filter", 0 };
-    const tobi_place cutoff = { &filter, "cutoff", 0 };
+    const tobi_place cutoff = { &filter, "cutoff", 0 }, order = { &filter, "order", 0 };
+    if (d->order && !(d->cutoff > 0))
+        tobi_source_mistake_at_key(o->source, &order, "is of a filter, which needs a cutoff");
     if (d->rate > steps*(1 + 1e-9))
         tobi_source_mistake(o->source, &at,
                             "is %.10g Hz, more than a value per time step of %.10g s; allowed is up "

@@ -98,6 +98,17 @@ static void check_vessel(const tobi_scene *scene, tobi_source *source, const tob
     if (name) tobi_source_mistake(source, &vessel, "\"%s\" is no body of the scene", name);
 }
 
+/* Both say how a vessel is filled; beside another shape they would do nothing. */
+static void check_unfilled(tobi_source *source, const tobi_scene_fill *fill, const tobi_place *place)
+{
+    static const char *const of_vessel[] = { "level", "seed" };
+    const int given[] = { fill->def.level != 0, fill->def.seed[0] > -1e9 };
+    for (int k = 0; k < 2; k++) {
+        const tobi_place key = { place, of_vessel[k], 0 };
+        if (given[k]) tobi_source_mistake_at_key(source, &key, "is for a vessel; this region has its shape");
+    }
+}
+
 static void check_fill(const tobi_scene *scene, tobi_source *source, const tobi_scene_fill *fill,
                        const tobi_place *place)
 {
@@ -119,6 +130,7 @@ static void check_fill(const tobi_scene *scene, tobi_source *source, const tobi_
         check_box(scene, source, &fill->def, place);
     else if (has_sphere && check_pair(source, place, &fill->bound, "sphere", "centre", "radius"))
         check_sphere(scene, source, &fill->def, place);
+    if (shapes == 1 && !has_vessel) check_unfilled(source, fill, place);
     for (int k = 0; k < 4 && !has_mesh; k++) {
         if (!tobi_bind_has(t, given, of_mesh[k])) continue;
         tobi_source_mistake(source, place, "scale, rotation and translation belong to a mesh");

@@ -27,6 +27,8 @@ static void the_law_has_its_limits(void **state)
     assert_true(fabs(how.gain/sqrt(9.81/0.5) - 1) < 1e-3);
     tobi_waves_free(w);
     d.absorb = 0;
+    REFUSED(tobi_waves_create(&d, &w, &err), TOBI_INVALID, "absorb_period is for a piston that absorbs");
+    d.absorb_period = 0;
     d.height = 0.01;
     d.period = 2;
     OK(tobi_waves_create(&d, &w, &err));

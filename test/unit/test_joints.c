@@ -270,6 +270,16 @@ static void mistakes_are_refused(void **state)
     def.locked = "x";
     refuse(def, "has locked axes and a hinge or guide");
     def = good;
+    def.velocity[0] = 1;
+    refuse(def, "cannot start with that velocity: its hinge leaves it the turn about the axis, set off by");
+    def.velocity[0] = 0;
+    def.angular_velocity[2] = 1;
+    refuse(def, "cannot start with that angular_velocity: its hinge");
+    def = rig_def();
+    def.guide_axis[0] = 1;
+    def.velocity[2] = 1;
+    refuse(def, "cannot start with that velocity: its guide leaves it the way along the axis");
+    def = good;
     def.hinge_lower = 5;
     def.hinge_upper = 10;
     refuse(def, "lower is 0 or below, upper is 0 or above");

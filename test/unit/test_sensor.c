@@ -461,6 +461,8 @@ static void scenes_tell_the_place(void **state)
     expect("\"body\": \"blok\"", "there is no body \"blok\"; did you mean \"block\"?");
     expect("\"body\": \"elephant\"", "there is no body \"elephant\"");
     expect("\"kind\": \"level\", \"body\": \"block\"", "is not for a level");
+    expect("\"filter\": { \"order\": \"butterworth\" }",
+           "probes[0].filter.order: is of a filter, which needs a cutoff");
     expect("\"rate\": 1001", "probes[0].rate: is 1001 Hz, more than a value per time step of 0.001 s");
     expect("\"rate\": 100, \"filter\": { \"cutoff\": 60 }",
            "probes[0].filter.cutoff: is 60 Hz, more than half of 100");
