@@ -93,7 +93,7 @@ int list_families(void)
     for (const family_option *o = common; o->name; o++) print_option(o);
     printf("      --method         isph, eisph, dfsph or wcsph (isph)\n");
     printf("\nWrite one and run it:\n  tobiuo new static_pressure --spacing 0.0125 --support 2.4\n"
-           "  tobiuo run static_pressure_PS0d0125_CSML2d4_RK1\n"
+           "  tobiuo run static_pressure_PS0d0125_CSML2d4_RK2\n"
            "\"tobiuo scenes\" lists the shipped scenes; \"tobiuo new NAME\" copies one.\n");
     return 0;
 }
@@ -225,7 +225,7 @@ static int is_given(const family_choice *c, const char *name)
     return 0;
 }
 
-/* As users of the tank program name their runs: static_pressure_PS0d0125_CSML2d4_RK1. */
+/* As users of the tank program name their runs: static_pressure_PS0d0125_CSML2d4_RK2. */
 static char *name_choice(const family_choice *c)
 {
     char *text = NULL;
@@ -237,7 +237,8 @@ static char *name_choice(const family_choice *c)
     if (c->dimension == 2) fputs("_2d", out);
     if (is_given(c, "spacing")) put_number(out, "PS", chosen(c, "spacing"));
     if (is_given(c, "support")) put_number(out, "CSML", chosen(c, "support"));
-    if (isph && (is_given(c, "spacing") || is_given(c, "support"))) fputs("_RK1", out);
+    if (isph && (is_given(c, "spacing") || is_given(c, "support")))
+        fprintf(out, "_RK%d", tobi_default_isph_def().time_order);
     if (!isph) fprintf(out, "_%s", c->method);
     if (fclose(out) != 0) exit(complain("out of memory"));
     return text;

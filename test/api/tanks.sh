@@ -22,8 +22,8 @@ for family in $families; do
     expect 0 "" check "$family.isph"
 done
 expect 0 "" new static_pressure --spacing 0.0125 --support=2.4
-check "as users name it" test -s static_pressure_PS0d0125_CSML2d4_RK1/scene.json
-expect 0 "" check static_pressure_PS0d0125_CSML2d4_RK1
+check "as users name it" test -s static_pressure_PS0d0125_CSML2d4_RK2/scene.json
+expect 0 "" check static_pressure_PS0d0125_CSML2d4_RK2
 expect 1 "is there already" new static_pressure --spacing 0.0125 --support=2.4
 expect 0 "" new --dimension 2 --method dfsph dam_break --spacing 0.02
 check "2-D and another method" test -s dam_break_2d_PS0d02_dfsph/scene.json
