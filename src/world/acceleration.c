@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/param.h"
 #include "rigid/keyframes.h"
+#include "rigid/waves.h"
 #include "tobiuo/motion.h"
 #include <math.h>
 #include <stdlib.h>
@@ -108,6 +109,10 @@ tobi_status tobi_world_set_frame(tobi_world *w, tobi_motion_fn motion, void *use
     TOBI_NEED_WORLD(w);
     TOBI_NEED(motion, "the motion");
     TOBI_TRY(need_drive(w, "frame", err));
+    double direction[3];
+    if (motion == tobi_motion_positions && tobi_motion_absorber(user, direction))
+        return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "a frame absorbs no waves; a body that moves "
+                                          "by a piston does"), "frame");
     w->drive->frame = motion;
     w->drive->frame_user = user;
     return TOBI_OK;
@@ -232,6 +237,24 @@ static int turns(const tobi_acceleration *f)
     return sum > 1e-6;
 }
 
+/* Along a periodic axis all places are alike, and with them what the frame does there. */
+static tobi_status check_turn(const tobi_world *w, const tobi_acceleration *f, tobi_error *err)
+{
+    const tobi_box *box = &w->system[0].box;
+    if (!turns(f)) return TOBI_OK;
+    for (int k = 0; k < w->system_count; k++)
+        if (w->system[k].method->solids)
+            return tobi_fail(err, TOBI_UNSUPPORTED, "the frame turns, which %s does not know; allowed are "
+                             "frames that shift", w->system[k].method->name);
+    for (int a = 0; a < box->dimension; a++)
+        if (box->periodic[a] && fabs(f->gradient[0][a]) + fabs(f->gradient[1][a]) + fabs(f->gradient[2][a]) >
+                                1e-6)
+            return tobi_fail(err, TOBI_INVALID, "the frame turns the axis %c, along which the domain is "
+                             "periodic: its forces would jump there; allowed are frames that shift, or "
+                             "turn about that axis", "xyz"[a]);
+    return TOBI_OK;
+}
+
 /* Of the liquid of the start at a corner of its box: bits of `corner` choose the upper end. */
 static double change_at(const tobi_world *w, const tobi_acceleration *f, int corner)
 {
@@ -292,10 +315,7 @@ tobi_status tobi_world_start_drive(tobi_world *w, tobi_error *err)
         if (!is_finite(&f))
             return tobi_fail(err, TOBI_INVALID, "at t = %.9g s the acceleration of the frame is no number",
                              end*n/SAMPLES);
-        for (int k = 0; k < w->system_count && turns(&f); k++)
-            if (w->system[k].method->solids)
-                return tobi_fail(err, TOBI_UNSUPPORTED, "the frame turns, which %s does not know; allowed "
-                                 "are frames that shift", w->system[k].method->name);
+        TOBI_TRY(tobi_at_key(err, check_turn(w, &f, err), "frame"));
     }
     TOBI_TRY(tobi_world_sample_drive(w, err));
     return find_field(w, 0, STEP, &w->sim.acceleration, err);

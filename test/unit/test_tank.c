@@ -302,6 +302,42 @@ static void scenes_say_it(void **state)
     unlink("bend.lua");
 }
 
+/* With the key of the scene that is to blame. */
+static void refuse_frame(const char *frame, const char *walls, const char *words)
+{
+    char text[1200];
+    tobi_error err = { 0 };
+    tobi_scene *scene;
+    tobi_world *w = NULL;
+    snprintf(text, sizeof text, "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1]%s }, "
+             "\"spacing\": 0.1, \"end_time\": 1, \"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"box\": "
+             "{ \"min\": [0, 0, 0], \"max\": [1, 1, 0.5] } } ] } ], \"frame\": { %s } }", walls, frame);
+    OK(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, &err));
+    tobi_status status = tobi_scene_build(scene, &w, &err);
+    if (status == TOBI_OK) status = tobi_world_start(w, &err);
+    if ((status == TOBI_OK) != !words) fail_msg("%s: %s", frame, status == TOBI_OK ? "accepted" : err.text);
+    if (words && (!strstr(err.text, words) || strcmp(err.key, "frame") != 0))
+        fail_msg("%s: %s", err.key, err.text);
+    tobi_world_destroy(w);
+    tobi_scene_free(scene);
+}
+
+/* The field is that of a frame, whose turn a periodic axis does not know, and no piston hears it. */
+static void frames_that_nothing_could_follow(void **state)
+{
+    static const char periodic[] = ", \"walls\": { \"x\": \"periodic\" }";
+    static const char swing[] = "{ \"amplitude\": 2, \"period\": 1, \"ramp\": 1 }";
+    char text[200];
+    (void)state;
+    for (int a = 0; a < 3; a++) {
+        snprintf(text, sizeof text, "\"%s\": %s", (const char *[]){ "roll", "pitch", "yaw" }[a], swing);
+        refuse_frame(text, periodic, a ? "turns the axis x, along which the domain is periodic" : NULL);
+        refuse_frame(text, "", NULL);
+    }
+    refuse_frame("\"surge\": { \"amplitude\": 0.01, \"period\": 1 }", periodic, NULL);
+    refuse_frame("\"piston\": { \"depth\": 0.5, \"absorb\": true }", "", "a frame absorbs no waves");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -310,6 +346,7 @@ int main(void)
         cmocka_unit_test(frames_make_fictitious_forces),
         cmocka_unit_test(bodies_feel_the_frame),
         cmocka_unit_test(bad_frames_are_refused),
+        cmocka_unit_test(frames_that_nothing_could_follow),
         cmocka_unit_test(every_method_follows),
         cmocka_unit_test(zones_damp_velocities),
         cmocka_unit_test(bad_zones_are_refused),
