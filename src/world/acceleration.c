@@ -111,8 +111,8 @@ tobi_status tobi_world_set_frame(tobi_world *w, tobi_motion_fn motion, void *use
     TOBI_TRY(need_drive(w, "frame", err));
     double direction[3];
     if (motion == tobi_motion_positions && tobi_motion_absorber(user, direction))
-        return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "a frame absorbs no waves; a body that moves "
-                                          "by a piston does"), "frame");
+        return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "a frame absorbs no waves; a body that "
+                                          "moves by a piston does"), "frame");
     w->drive->frame = motion;
     w->drive->frame_user = user;
     return TOBI_OK;
@@ -247,8 +247,8 @@ static tobi_status check_turn(const tobi_world *w, const tobi_acceleration *f, t
             return tobi_fail(err, TOBI_UNSUPPORTED, "the frame turns, which %s does not know; allowed are "
                              "frames that shift", w->system[k].method->name);
     for (int a = 0; a < box->dimension; a++)
-        if (box->periodic[a] && fabs(f->gradient[0][a]) + fabs(f->gradient[1][a]) + fabs(f->gradient[2][a]) >
-                                1e-6)
+        if (box->periodic[a] && fabs(f->gradient[0][a]) + fabs(f->gradient[1][a]) +
+                                fabs(f->gradient[2][a]) > 1e-6)
             return tobi_fail(err, TOBI_INVALID, "the frame turns the axis %c, along which the domain is "
                              "periodic: its forces would jump there; allowed are frames that shift, or "
                              "turn about that axis", "xyz"[a]);
