@@ -265,11 +265,12 @@ int tobi_motion_is_rigid(const tobi_motion *motion)
     return motion->kind != KIND_SCRIPT || tobi_script_is_rigid(motion->script);
 }
 
-int tobi_motion_makes_waves(const tobi_motion *motion)
+double tobi_motion_wave_depth(const tobi_motion *motion)
 {
-    int is = motion->kind == KIND_PISTON || motion->kind == KIND_FLAP;
-    for (int k = 0; k < motion->parts; k++) is |= tobi_motion_makes_waves(motion->part[k]);
-    return is;
+    if (motion->kind == KIND_PISTON || motion->kind == KIND_FLAP) return tobi_waves_depth(motion->waves);
+    double depth = 0;
+    for (int k = 0; k < motion->parts && !(depth > 0); k++) depth = tobi_motion_wave_depth(motion->part[k]);
+    return depth;
 }
 
 const tobi_waves *tobi_motion_absorber(const tobi_motion *motion, double direction[3])

@@ -236,6 +236,8 @@ tobi_status tobi_waves_create(const tobi_wave_maker_def *def, tobi_waves **out, 
     return TOBI_OK;
 }
 
+double tobi_waves_depth(const tobi_waves *w) { return w->def.depth; }
+
 void tobi_waves_free(tobi_waves *w)
 {
     if (!w) return;

@@ -9,6 +9,7 @@ typedef struct tobi_waves tobi_waves;
 /* TOBI_INVALID in words for waves that break or that the theory does not have. */
 tobi_status tobi_waves_create(const tobi_wave_maker_def *def, tobi_waves **out, tobi_error *err);
 void tobi_waves_free(tobi_waves *waves);
+double tobi_waves_depth(const tobi_waves *waves);
 /* m: how far the maker is from rest at the height of still water. */
 double tobi_waves_displacement(const tobi_waves *waves, double t);
 /* m: the level by the same theory, so far in front of a piston, local waves and the bound second harmonic of
@@ -29,8 +30,8 @@ int tobi_waves_absorption(const tobi_waves *waves, tobi_absorption *out);
 /* The piston of a motion or of one of its parts that absorbs, and where its waves go (unit vector); NULL. */
 const tobi_waves *tobi_motion_absorber(const tobi_motion *motion, double direction[3]);
 
-/* 1: the motion is a piston or a flap, or one of its parts is. */
-int tobi_motion_makes_waves(const tobi_motion *motion);
+/* m: the depth that a piston or flap, or one among the parts of the motion, is made for; 0: there is none. */
+double tobi_motion_wave_depth(const tobi_motion *motion);
 
 /* 1/m: k of omega^2 = g k tanh kh for a period (s) and a depth (m). */
 double tobi_waves_number(double gravity, double depth, double period);

@@ -15,6 +15,7 @@ typedef struct tobi_binder {
     tobi_texts *texts;
     const char *directory;     /* absolute, where relative paths start             */
     int dimension;             /* 2: vectors may have two components               */
+    double gravity;            /* m/s2, the size of the scene's                    */
 } tobi_binder;
 
 /* What an object gives: one bit per row of the table. */

@@ -102,8 +102,8 @@ static const tobi_param keyframes_rows[] = {
       .doc = "Where the waves go, of any length." }, \
     { .key = "depth", REAL, WAVE depth), LENGTHS, .unit = "m", .required = true, \
       .doc = "Depth of the still water." }, \
-    { .key = "gravity", REAL, WAVE gravity), .def = { 9.81 }, RANGE(1e-6, 1e6), .unit = "m/s2", \
-      .doc = "Size of gravity, for the theory." }, \
+    { .key = "gravity", REAL, WAVE gravity), RANGE(1e-6, 1e6), .unit = "m/s2", \
+      .text = "that of the scene", .doc = "Size of gravity, for the theory." }, \
     { .key = "regular.height", REAL, WAVE height), HEIGHTS, \
       .doc = "Height of regular waves from trough to crest, by Biesel's transfer function. One of the " \
              "three kinds of waves is given." }, \
@@ -268,6 +268,7 @@ static tobi_status create_wave_maker(const tobi_motion_def *def, int flap, tobi_
                                      tobi_error *err)
 {
     tobi_wave_maker_def waves = def->as.waves;
+    if (!(waves.gravity > 0)) waves.gravity = def->gravity;
     waves.flap = flap;
     waves.up[def->dimension - 1] = 1;
     return tobi_motion_wave_maker(&waves, motion, err);
@@ -328,7 +329,7 @@ static tobi_motion *bind_one(const tobi_binder *binder, json_t *value, const tob
 {
     const char *beside_script[TOBI_PARTS];
     tobi_part_keys("script", beside_script);
-    *def = (tobi_motion_def){ .dimension = binder->dimension };
+    *def = (tobi_motion_def){ .dimension = binder->dimension, .gravity = binder->gravity };
     int64_t before = tobi_report_total(binder->source->report);
     if (!json_is_object(value)) {
         tobi_source_mistake(binder->source, place, "is %s, must be an object { ... }",

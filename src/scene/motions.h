@@ -38,6 +38,7 @@ typedef struct tobi_motion_def {
         tobi_wave_maker_def waves;
     } as;
     int dimension;                     /* of the scene                                   */
+    double gravity;                    /* m/s2, its size in the scene                    */
     json_t *params;                    /* of a script; borrowed from the scene, or NULL  */
 } tobi_motion_def;
 

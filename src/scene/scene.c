@@ -10,6 +10,7 @@
 #include "base/param.h"
 #include <limits.h>
 #include <stdio.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -237,6 +238,9 @@ static void flatten_world(tobi_scene *scene)
     w->gravity[1] = -9.81;
 }
 
+/* Along an axis exactly the number of the scene. */
+static double size_of(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
+
 /* Where the key is wrong, the corners tell which other values are right. */
 static int find_dimension(const json_t *scene)
 {
@@ -253,13 +257,14 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     tobi_part_keys("world", also);
     tobi_place root = { 0 };
 
-    tobi_binder binder = { source, &scene->texts, scene->directory, 3 };
+    tobi_binder binder = { source, &scene->texts, scene->directory, 3, 0 };
     binder.dimension = find_dimension(scene->root);
     scene->world = tobi_default_world_def();
     scene->world_bound =
         tobi_bind(&binder, &tobi_world_table, scene->root, &root, also, &scene->world);
     scene->world.dimension = binder.dimension;
     flatten_world(scene);
+    binder.gravity = size_of(scene->world.gravity);
     TOBI_TRY(read_method(scene, &binder, &root));
     TOBI_TRY(read_fluids(scene, &binder, &root));
     TOBI_TRY(tobi_interfaces_bind(scene, &binder, &root));

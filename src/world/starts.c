@@ -136,7 +136,8 @@ tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err)
 {
     TOBI_TRY(note_returns(w, err));
     if (w->system[0].fluid_count == 0) return TOBI_OK;
-    for (int k = 0; k < w->sim.body_count; k++) TOBI_TRY(note_jerk(w, &w->sim.bodies[k], err));
+    for (int k = 0; k < w->sim.body_count; k++)
+        TOBI_TRY(tobi_at_key(err, note_jerk(w, &w->sim.bodies[k], err), "bodies[%d].motion", k));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(note_gap(w, &w->regions[k], err));
     TOBI_TRY(note_contact_angles(w, err));
     return note_compression(w, err);

@@ -2,10 +2,13 @@
    is looked for at times, so that one that is out for a moment between them is missed. */
 #include "rigid/waves.h"
 #include "world/world.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 enum { TIMES = 2000 };
+/* Share of the liquid's height; the lattice fits to less. */
+static const double OTHER_DEPTH = 0.05;
 
 /* Along gravity a flap may turn below the floor, at its hinge. */
 static int is_upright(const tobi_world *w, int axis)
@@ -29,15 +32,16 @@ static tobi_status check_place(const tobi_world *w, const tobi_body *b, const do
     return TOBI_OK;
 }
 
-static int makes_waves(const tobi_body *b)
+/* m: the depth that a wave maker is made for; 0 of another body. */
+static double wave_depth(const tobi_body *b)
 {
-    return b->motion == tobi_motion_positions && tobi_motion_makes_waves(b->motion_user);
+    return b->motion == tobi_motion_positions ? tobi_motion_wave_depth(b->motion_user) : 0;
 }
 
 tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tobi_error *err)
 {
     const int64_t n = b->mesh.vertex_count;
-    if (!makes_waves(b)) return TOBI_OK;
+    if (!(wave_depth(b) > 0)) return TOBI_OK;
     double (*at)[3] = malloc((size_t)(n + 1)*sizeof *at);
     if (!at) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the vertices of '%s'", b->name);
     tobi_status status = TOBI_OK;
@@ -51,16 +55,35 @@ tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tob
 }
 
 /* The figures are of test/physics/wave_maker. */
-tobi_status tobi_world_note_makers(tobi_world *w, tobi_error *err)
+static tobi_status note_method(tobi_world *w, const tobi_body *b, tobi_error *err)
 {
     const tobi_method *m = w->system[0].method;
     char text[240];
     if (!m->damps_waves) return TOBI_OK;
+    snprintf(text, sizeof text, "by %s its waves come out too low: on 10 layers of particles by up to a "
+             "quarter, and they get lower on their way; isph keeps them\n", m->name);
+    return tobi_world_add_notes(w, "body", b->name, text, err);
+}
+
+/* With openings the head of the start is that of the whole domain. */
+static tobi_status note_depth(tobi_world *w, const tobi_body *b, tobi_error *err)
+{
+    const double *g = w->sim.def.gravity, depth = wave_depth(b);
+    const double height = w->system[0].start_head/sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
+    char text[240];
+    if (w->sim.opening_count > 0 || !(height > 0) || fabs(depth - height) <= OTHER_DEPTH*height)
+        return TOBI_OK;
+    snprintf(text, sizeof text, "its waves are those of a depth of %.4g m, and the liquid starts %.4g m "
+             "high: where the bottom is flat, its depth should be that\n", depth, height);
+    return tobi_world_add_notes(w, "body", b->name, text, err);
+}
+
+tobi_status tobi_world_note_makers(tobi_world *w, tobi_error *err)
+{
     for (int k = 0; k < w->sim.body_count; k++) {
-        if (!makes_waves(&w->sim.bodies[k])) continue;
-        snprintf(text, sizeof text, "by %s its waves come out too low: on 10 layers of particles by up to a "
-                 "quarter, and they get lower on their way; isph keeps them\n", m->name);
-        TOBI_TRY(tobi_world_add_notes(w, "body", w->sim.bodies[k].name, text, err));
+        if (!(wave_depth(&w->sim.bodies[k]) > 0)) continue;
+        TOBI_TRY(note_method(w, &w->sim.bodies[k], err));
+        TOBI_TRY(note_depth(w, &w->sim.bodies[k], err));
     }
     return TOBI_OK;
 }

@@ -127,6 +127,23 @@ static void methods_that_damp_waves_are_told(void **state)
     }
 }
 
+/* Its stroke is for a depth of 0.2 m. */
+static void another_depth_is_told(void **state)
+{
+    static const char deep[] = "\"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"box\": { \"min\": [0, 0],"
+                               "\"max\": [0.8, 0.3] } } ] } ],";
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        tank t = make("isph", k ? deep : WATER);
+        int told = 0;
+        OK(tobi_world_start(t.w, &err));
+        for (int n = 0; tobi_world_note(t.w, n); n++)
+            told += !!strstr(tobi_world_note(t.w, n), "a depth of 0.2 m, and the liquid starts 0.3 m high");
+        assert_int_equal(told, k);
+        end(t);
+    }
+}
+
 static void solids_do_not_know_it(void **state)
 {
     (void)state;
@@ -142,7 +159,7 @@ int main(void)
         cmocka_unit_test(the_law_has_its_limits),
         cmocka_unit_test(a_restart_has_the_same_bits),
         cmocka_unit_test(a_damaged_state_is_refused),
-        cmocka_unit_test(methods_that_damp_waves_are_told),
+        cmocka_unit_test(methods_that_damp_waves_are_told), cmocka_unit_test(another_depth_is_told),
         cmocka_unit_test(solids_do_not_know_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

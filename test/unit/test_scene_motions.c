@@ -135,12 +135,42 @@ static void mistakes_are_told(void **state)
            "must have exactly one of");
 }
 
+/* m: of a piston in a scene with that gravity. */
+static double stroke(const char *gravity, const char *own)
+{
+    const double rest[3] = { 0.3, 0.4, 0 };
+    char text[1000];
+    snprintf(text, sizeof text,
+             "{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.1,"
+             "\"end_time\": 1, %s \"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"box\": "
+             "{ \"min\": [0.5, 0], \"max\": [1, 0.5] } } ] } ], \"bodies\": [ { \"name\": \"b\", \"box\": "
+             "{ \"min\": [0.3, 0], \"max\": [0.5, 1] }, \"motion\": { \"piston\": { \"depth\": 0.5, %s"
+             "\"regular\": { \"height\": 0.01, \"period\": 1.5 } } } } ] }", gravity, own);
+    tobi_scene *scene = load(text);
+    const double way = place_at(scene, 0.3, rest)[0] - rest[0];
+    tobi_scene_free(scene);
+    return way;
+}
+
+/* The theory of a wave maker has the gravity of its scene. */
+static void wave_makers_know_gravity(void **state)
+{
+    (void)state;
+    const double earth = stroke("", "\"gravity\": 9.81,"), moon = stroke("", "\"gravity\": 1.62,");
+    assert_true(fabs(earth - moon) > 0.2*fabs(earth));
+    assert_true(stroke("", "") == earth);
+    assert_true(stroke("\"gravity\": [0, -9.81],", "") == earth);
+    assert_true(stroke("\"gravity\": [0, -1.62],", "") == moon);
+    assert_true(stroke("\"gravity\": [0, -1.62],", "\"gravity\": 9.81,") == earth);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(words_are_degrees_of_freedom),
         cmocka_unit_test(lists_are_sums),
         cmocka_unit_test(mistakes_are_told),
+        cmocka_unit_test(wave_makers_know_gravity),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

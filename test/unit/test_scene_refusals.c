@@ -86,6 +86,27 @@ static void the_start_names_keys(void **state)
     tobi_scene_free(scene);
 }
 
+/* And a motion that leaves the plane, which only its steps show. */
+static void the_start_names_motions(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.05,\n"
+        "\"end_time\": 1, \"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"box\": { \"min\": [0.2, 0],\n"
+        "\"max\": [1, 0.5] } } ] } ], \"bodies\": [ { \"name\": \"b\", \"box\": { \"min\": [0, 0],\n"
+        "\"max\": [0.2, 1] }, \"motion\": { \"translation\": { \"velocity\": [0, 0, 1] } } } ] }";
+    tobi_error err = { 0 };
+    tobi_scene *scene;
+    tobi_world *w;
+    assert_int_equal(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, &err), TOBI_OK);
+    assert_int_equal(tobi_scene_build(scene, &w, &err), TOBI_OK);
+    assert_int_equal(tobi_world_start(w, &err), TOBI_INVALID);
+    tobi_scene_place_error(scene, &err);
+    expect_start(err.text, "s.json:4:20: bodies[0].motion: body 'b': its motion shifts a point by");
+    tobi_world_destroy(w);
+    tobi_scene_free(scene);
+}
+
 static void rounding_is_no_breach(void **state)
 {
     (void)state;
@@ -147,7 +168,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(keys_are_named),
-        cmocka_unit_test(the_start_names_keys),
+        cmocka_unit_test(the_start_names_keys), cmocka_unit_test(the_start_names_motions),
         cmocka_unit_test(rounding_is_no_breach),
         cmocka_unit_test(keys_of_errors),
         cmocka_unit_test(names_have_room),
