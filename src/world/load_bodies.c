@@ -23,6 +23,19 @@ struct tobi_loaded_body {
     double absorb[TOBI_ABSORB_DOUBLES];      /* of a piston that absorbs                         */
 };
 
+/* A mesh that was replaced meanwhile is another body: its state would go on with another mass. */
+static tobi_status check_same(const tobi_body *b, const tobi_body_info *then, tobi_error *err)
+{
+    const double tiny = 1e-9, volume = b->rest.volume, mass = b->rigid.mass;
+    if (fabs(then->volume - volume) <= tiny*fabs(volume) && fabs(then->mass - mass) <= tiny*fabs(mass) &&
+        then->particles == b->particle_count) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "the checkpoint is of another scene: body '%s' has %.10g m3, %.10g "
+                     "kg and %lld particles in it, %.10g m3, %.10g kg and %lld in the scene; was its mesh "
+                     "changed?",
+                     b->name, then->volume, then->mass, (long long)then->particles, volume, mass,
+                     (long long)b->particle_count);
+}
+
 static tobi_status read_state(const tobi_body *b, int k, tobi_store *f, tobi_loaded_body *l, tobi_error *err)
 {
     char name[32];
@@ -32,6 +45,7 @@ static tobi_status read_state(const tobi_body *b, int k, tobi_store *f, tobi_loa
     TOBI_TRY(tobi_store_get(f, name, TOBI_F64, 7, 1, l->load, err));
     tobi_world_name_body(k, "", name);
     TOBI_TRY(tobi_store_get(f, name, TOBI_U8, (int64_t)sizeof l->info, 1, &l->info, err));
+    TOBI_TRY(check_same(b, &l->info, err));
     int good = 1;
     for (int i = 0; i < TOBI_RIGID_DOUBLES; i++) good &= isfinite(l->state[i]) != 0;
     for (int i = 0; i < 7; i++) good &= isfinite(l->load[i]) != 0;

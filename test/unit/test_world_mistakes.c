@@ -287,11 +287,18 @@ static void checkpoints_of_others(void **state)
     world = make_world(&def, 1);
     OK(tobi_world_add_body(world, &body, &err));
     REFUSED(tobi_world_load(world, "other.h5", &err), TOBI_INVALID, "it has 0 bodies, the scene 1");
+    OK(tobi_world_save(world, "body.h5", &err));
     tobi_world_destroy(world);
+    body.box_max[0] = 0.95;             /* its mesh was drawn anew meanwhile */
+    world = make_world(&def, 1);
+    OK(tobi_world_add_body(world, &body, &err));
+    REFUSED(tobi_world_load(world, "body.h5", &err), TOBI_INVALID, "the checkpoint is of another scene: body "
+            "'box' has 0.001 m3, 1 kg");
+    tobi_world_destroy(world);
+    remove("body.h5");
 
     tobi_fluid_def fluid = tobi_default_fluid_def();
     tobi_fill_def small = make_fill(0, 0.2);
-    def.spacing = 0.1;
     world = make_world(&def, 0);
     assert_int_equal(tobi_world_add_fluid(world, &fluid, &small, 1, NULL), TOBI_OK);
     REFUSED(tobi_world_load(world, "other.h5", &err), TOBI_INVALID,
