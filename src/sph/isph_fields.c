@@ -83,7 +83,8 @@ static void read_viscosity(tobi_system *s, isph_solver *m, const sph_view *share
     read_gain(s, kept, 1);
 }
 
-/* The velocities that the pressure equation gets, their divergence, and the source. */
+/* The velocities that the pressure equation gets, their divergence, and the source: 0 before there is a step,
+   by which it is divided. */
 static void predict(tobi_system *s, isph_solver *m, const sph_view *shared, int source)
 {
     tobi_float4 *out = sph_fields_of(&s->particles)->accel;
@@ -91,9 +92,10 @@ static void predict(tobi_system *s, isph_solver *m, const sph_view *shared, int 
     launch(s, m, m->kernel->isph_gravity);
     m->view.gravity_dt = (float)m->view.dt;
     launch(s, m, m->kernel->isph_divergence);
-    if (source) launch(s, m, m->kernel->isph_rows);
+    if (source && m->view.dt > 0) launch(s, m, m->kernel->isph_rows);
     m->view.gravity_dt = 0;
-    for (int64_t i = 0; source && i < s->particles.count; i++) out[i].x = (float)m->view.source[i];
+    for (int64_t i = 0; source && i < s->particles.count; i++)
+        out[i].x = m->view.dt > 0 ? (float)m->view.source[i] : 0;
 }
 
 static void read_geometry(tobi_system *s, const isph_view *v, int normal)

@@ -206,6 +206,8 @@ static void terms_are_those_of_the_step(void **state)
         fill.box_max[0] = fill.box_max[1] = 0.2;
         OK(tobi_world_create(&w, NULL, &world[k], &err));
         OK(tobi_world_add_fluid(world[k], &fluid, &fill, 1, &err));
+        if (k == 0) OK(tobi_world_read(world[k], TOBI_FLUID, "pressure_source", source, WATER, &err));
+        for (int i = 0; i < WATER; i++) assert_true(source[i] == 0 || k > 0);     /* there is no step yet */
         for (int step = 0; step < 20; step++) {
             OK(tobi_world_step(world[k], 0, NULL, &err));
             if (k) continue;
