@@ -6,11 +6,10 @@
 #include "world/acceleration.h"
 #include "world/beside.h"
 #include "world/bodies.h"
-#include "world/limits.h"
 #include "world/openings.h"
+#include "world/runaway.h"
 #include "base/error.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static tobi_status remember(tobi_world *w, tobi_error *err)
@@ -180,129 +179,6 @@ static tobi_status step_systems(tobi_world *w, const int64_t substeps[TOBI_SYSTE
     return TOBI_OK;
 }
 
-static void add_info(tobi_step_info *sum, const tobi_step_info *one)
-{
-    const double all = (double)(sum->fluid_particles + one->fluid_particles);
-    const double share = (double)one->fluid_particles/fmax(all, 1);
-    sum->density_converged &= one->density_converged;
-    sum->divergence_converged &= one->divergence_converged;
-    sum->viscosity_failed |= one->viscosity_failed;
-    sum->surface_share += share*(one->surface_share - sum->surface_share);
-    sum->speed_max = fmax(sum->speed_max, one->speed_max);
-    for (int a = 0; a < 3; a++) {
-        sum->wall_force[a] += one->wall_force[a];
-        sum->momentum[a] += one->momentum[a];
-    }
-    sum->weight += one->weight;
-    sum->kinetic_energy += one->kinetic_energy;
-    sum->potential_energy += one->potential_energy;
-    sum->elastic_energy += one->elastic_energy;
-    sum->fluid_particles += one->fluid_particles;
-    sum->particles_lost += one->particles_lost;
-    sum->mass_held += one->mass_held;
-    sum->put_back += one->put_back;
-    sum->capped += one->capped;
-    sum->contacts += one->contacts;
-}
-
-/* What only solids have, from theirs; at most one system has solids. */
-static void add_solid_info(tobi_step_info *sum, const tobi_step_info *one)
-{
-    sum->work_bodies = one->work_bodies;
-    sum->energy_lost = one->energy_lost;
-    sum->transfer_dissipation = one->transfer_dissipation;
-    sum->plastic_work = one->plastic_work;
-    sum->step_work = one->step_work;
-    sum->damping_work = one->damping_work;
-    sum->friction_work = one->friction_work;
-    sum->fracture_work = one->fracture_work;
-    sum->side_work = one->side_work;
-}
-
-void tobi_step_sum_up(tobi_world *w)
-{
-    tobi_step_info *sum = &w->sim.info;
-    *sum = w->system[0].info;
-    for (int k = 1; k < w->system_count; k++) {
-        add_info(sum, &w->system[k].info);
-        if (w->system[k].solid_count) add_solid_info(sum, &w->system[k].info);
-    }
-    sum->step = w->sim.step;
-    sum->time = w->sim.time;
-    sum->dt = w->sim.dt;
-}
-
-/* Which key of the scene makes steps shorter, and its value. */
-static const char *name_cfl(const tobi_system *s, double *value)
-{
-    const tobi_world_def *d = &s->sim->def;
-    const int mpm = s->method->solids;
-    *value = mpm ? ((const tobi_mlsmpm_def *)s->def)->cfl : d->time_step > 0 ? d->time_step : d->cfl;
-    return mpm ? "mlsmpm.cfl" : d->time_step > 0 ? "time_step" : "cfl";
-}
-
-/* Spacings that the fastest particle goes while a body that has come back is still the likely cause. */
-static const double RETURN_REACH = 20;
-/* Share of the domain from which liquid that inlets bring has pockets without a free surface. */
-static const double CROWDED = 0.8;
-
-/* What may help besides a smaller step. Liquid in a body that comes back lands in a layer beside it at once,
-   crowded as it never is else: pressure throws it. */
-static void name_remedy(const tobi_system *s, double limit, char text[240])
-{
-    const tobi_body *b = s->sim->bodies;
-    for (int k = 0; k < s->sim->body_count; k++, b++) {
-        const double since = s->sim->time - b->absent[1];
-        if (!(b->absent[1] > 0 && since >= 0 && since*limit < RETURN_REACH*s->smoothing.spacing)) continue;
-        snprintf(text, 240, ". Body '%s' has just come back, and the liquid in it was pushed out at once: "
-                 "let a thick body come into liquid by a motion", b->name);
-        return;
-    }
-    if (tobi_openings_share(s) > CROWDED)
-        snprintf(text, 240, ". The inlets have all but filled the domain: stop them before, add an outlet, "
-                 "or make the domain larger");
-    else if (s->sim->def.speed_limit <= 0)
-        snprintf(text, 240, ", or a speed_limit, where liquid is meant to be that fast");
-}
-
-static tobi_status check_runaway(const tobi_system *s, tobi_error *err)
-{
-    double limit = s->sim->def.speed_limit, cfl;
-    const char *key = name_cfl(s, &cfl);
-    char remedy[240] = "";
-    if (limit <= 0) {
-        /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
-        const int64_t few = 20 + s->particles.count/200;
-        if (s->info.speed_max < TOBI_SPEED_LIMIT && s->info.capped <= few) return TOBI_OK;
-        limit = fmin(2.8*tobi_system_speed_scale(s), TOBI_SPEED_LIMIT);
-    }
-    if (s->info.speed_max < limit) return TOBI_OK;
-    name_remedy(s, limit, remedy);
-    for (int64_t i = 0; i < s->particles.count; i++) {
-        tobi_float4 v = s->particles.velocity[i];
-        tobi_double3 x = s->particles.position[i];
-        double speed = sqrt((double)v.x*v.x + (double)v.y*v.y + (double)v.z*v.z);
-        if (speed < limit || speed == 0) continue;   /* NaN goes on */
-        if (!isfinite(speed))
-            return tobi_fail(err, TOBI_DIVERGED,
-                             "the simulation diverged at t = %.9g s, step %lld: the speed of particle %lld "
-                             "at (%g, %g, %g) m is no number any more; a %s smaller than %g may help%s",
-                             s->sim->time, (long long)s->sim->step, (long long)s->particles.id[i],
-                             x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], key, cfl,
-                             remedy);
-        return tobi_fail(err, TOBI_DIVERGED,
-                         "the simulation diverged at t = %.9g s, step %lld: particle %lld at (%g, "
-                         "%g, %g) m moves at %g m/s, the limit is %g m/s; a %s smaller than %g may "
-                         "help%s",
-                         s->sim->time, (long long)s->sim->step, (long long)s->particles.id[i],
-                         x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], speed,
-                         limit, key, cfl, remedy);
-    }
-    return tobi_fail(err, TOBI_DIVERGED,
-                     "the simulation diverged at t = %.9g s: a speed reached %g m/s; a %s smaller than %g "
-                     "may help%s", s->sim->time, s->info.speed_max, key, cfl, remedy);
-}
-
 static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
@@ -327,7 +203,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     TOBI_TRY(tobi_openings_pass(w, err));
     tobi_absorb_finish(w);
     tobi_step_sum_up(w);
-    for (int k = 0; k < w->system_count; k++) TOBI_TRY(check_runaway(&w->system[k], err));
+    for (int k = 0; k < w->system_count; k++) TOBI_TRY(tobi_runaway_check(&w->system[k], err));
     return tobi_beside_check(w, err);
 }
 
