@@ -260,27 +260,15 @@ TOBI_FN float sph_plane_friction(const sph_view *v, int plane, float s, float si
    filter that takes motion at the particle scale and leaves longer waves, no-slip planes and the lift of
    planes, the hydrostatic part of their mirrored pressure, -(g . n)(s sigma + lambda) n and along them
    -lambda g, eq. (6), (6b). */
-typedef sph_laplacian_acc sph_kick_acc;
-TOBI_FN void sph_kick_start(const sph_view *v, int64_t i, sph_laplacian_acc *a)
+TOBI_FN void sph_kick_by(const sph_view *v, int64_t i, const float filter[3])
 {
-    sph_laplacian_begin(a, v->accel, i);
-}
-TOBI_FN void sph_kick_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_laplacian_acc *a,
-                           const int shape)
-{
-    (void)i;
-    sph_laplacian_add(v, n, a, v->accel, shape);
-}
-TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a, double *totals)
-{
-    float nu = v->implicit ? 0 : v->kinematic[v->fluid[i]], k = -v->filter*v->slope;
-    tobi_float4 u = v->velocity[i], l = v->accel[i];
+    static const tobi_float4 none;
+    float nu = v->implicit ? 0 : v->kinematic[v->fluid[i]];
+    tobi_float4 u = v->velocity[i], l = nu > 0 ? v->accel[i] : none;
     float speed[3] = {u.x, u.y, u.z}, wet = sph_wetness(v, i);
     float g[3];
     sph_gravity(v, i, g);
-    tobi_float4 sum = lane_sum4(a->ax, a->ay, a->az, lane_set(0));
-    float add[3] = {g[0] + 2*nu*l.x + k*sum.x, g[1] + 2*nu*l.y + k*sum.y, g[2] + 2*nu*l.z + k*sum.z};
-    (void)totals;
+    float add[3] = {g[0] + 2*nu*l.x + filter[0], g[1] + 2*nu*l.y + filter[1], g[2] + 2*nu*l.z + filter[2]};
     sph_add_turning(v, i, add);
     for (int p = 0; p < v->plane_count; p++) {
         float s = sph_plane_distance(v, p, i);
@@ -298,6 +286,33 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
     u.x += v->dt*add[0]; u.y += v->dt*add[1]; u.z += v->dt*add[2];
     v->wetness[i] = wet;      /* the walls' reaction needs the same */
     v->velocity[i] = u;
+}
+
+typedef sph_laplacian_acc sph_kick_acc;
+TOBI_FN void sph_kick_start(const sph_view *v, int64_t i, sph_laplacian_acc *a)
+{
+    sph_laplacian_begin(a, v->accel, i);
+}
+TOBI_FN void sph_kick_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_laplacian_acc *a,
+                           const int shape)
+{
+    (void)i;
+    sph_laplacian_add(v, n, a, v->accel, shape);
+}
+TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a, double *totals)
+{
+    const tobi_float4 sum = lane_sum4(a->ax, a->ay, a->az, lane_set(0));
+    const float k = -v->filter*v->slope, filter[3] = {k*sum.x, k*sum.y, k*sum.z};
+    (void)totals;
+    sph_kick_by(v, i, filter);
+}
+
+/* The same without a filter; without viscosity accel may be anything. */
+TOBI_FN void sph_kick_unfiltered(const sph_view *v, int64_t i, double *totals)
+{
+    static const float filter[3];
+    (void)totals;
+    sph_kick_by(v, i, filter);
 }
 
 /* Force of the fluid on plane walls: reaction of pressure, lift and friction. totals[0..2]: N; 3: sum of the

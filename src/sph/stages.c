@@ -304,12 +304,19 @@ static void apply_filter(tobi_system *s, sph_view *v, const sph_kernels *k)
     v->filter = 0;
 }
 
+static int is_viscous(const tobi_system *s, const sph_view *v)
+{
+    float most = 0;
+    for (int f = 0; f < s->fluid_count; f++) most = fmaxf(most, v->kinematic[f]);
+    return most > 0 && !v->implicit;
+}
+
 /* All but the filter of full vessels. */
 static void kick(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
     if (!v->implicit) sph_phases_rub(s, v, k);
-    launch(s, v, k->sph_laplacian, NULL);
-    launch(s, v, k->sph_kick, NULL);
+    if (v->filter > 0 || is_viscous(s, v)) launch(s, v, k->sph_laplacian, NULL);
+    launch(s, v, v->filter > 0 ? k->sph_kick : k->sph_kick_unfiltered, NULL);
     if (!v->implicit) sph_phases_kick(s, v, k);
     if (s->sim->body_count > 0) tobi_boundary_add_forces(s);
     sph_soft_add_forces(s);

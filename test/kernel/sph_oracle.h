@@ -380,6 +380,13 @@ static void oracle_kick(const oracle *o, const row *in, row *out, double *t)
     }
 }
 
+static void oracle_kick_unfiltered(const oracle *o, const row *in, row *out, double *t)
+{
+    oracle without = *o;
+    without.filter = 0;
+    oracle_kick(&without, in, out, t);
+}
+
 /* Reaction of the pressure on planes, of the lift and of the friction. */
 static void oracle_wall_force(const oracle *o, const row *in, row *out, double *t)
 {

@@ -22,6 +22,7 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_density oracle_density
 #define oracle_sph_laplacian oracle_laplacian
 #define oracle_sph_kick oracle_kick
+#define oracle_sph_kick_unfiltered oracle_kick_unfiltered
 #define oracle_sph_target_divergence oracle_midway
 #define oracle_sph_filter oracle_filter
 #define oracle_sph_filter_kick oracle_filter_kick
