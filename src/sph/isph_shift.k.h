@@ -58,8 +58,8 @@ TOBI_FN void isph_shift_start(const isph_view *v, int64_t i, isph_shift_acc *a)
 TOBI_FN void isph_shift_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,
                              isph_shift_acc *a, const int shape, const int kind)
 {
-    const lane f = isph_falloff(v, n, m, shape, kind), r = lane_sqrt(n->r2), x[3] = {n->dx, n->dy, n->dz},
-               push = ISPH_PUSH*lane_positive(ISPH_CORE*(float)v->spacing - r)/(r + 1e-20f);
+    const lane f = isph_falloff(v, n, m, shape, kind), x[3] = {n->dx, n->dy, n->dz};
+    const float core = ISPH_CORE*(float)v->spacing;
     lane u[3];
     (void)i;
     isph_velocity(v, n, m, kind, u);
@@ -70,8 +70,11 @@ TOBI_FN void isph_shift_pair(const isph_view *v, int64_t i, const tobi_neighbors
         a->low[b] -= lane_positive(a->low[b] - change);
         u[b] = f*u[b];
     }
+    if (lane_mask_less(n->r2, lane_set(core*core))) {       /* few pairs are so near */
+        const lane r = lane_sqrt(n->r2), push = ISPH_PUSH*lane_positive(core - r)/(r + 1e-20f);
+        for (int b = 0; b < 3; b++) a->core[b] += push*x[b];
+    }
     for (int b = 0; b < 3; b++) {
-        a->core[b] += push*x[b];
         a->bend[b] += u[b];
         for (int c = 0; c < 3; c++) a->slope[3*b + c] += u[b]*x[c];
     }
