@@ -26,13 +26,13 @@ static void match_bucket(int32_t low, half_edge *bucket, int64_t n, int32_t *opp
             continue;
         }
         for (int64_t k = i; k < j; k++)
-            opposite[bucket[k].index] = j - i == 1 ? TOBI_EDGE_OPEN : TOBI_EDGE_CROWDED;
-        if (!report->open && !report->crowded) {
+            opposite[bucket[k].index] = j - i == 1 ? TOBI_EDGE_OPEN : TOBI_EDGE_NON_MANIFOLD;
+        if (!report->open && !report->non_manifold) {
             report->ends[0] = low;
             report->ends[1] = bucket[i].other;
         }
         if (j - i == 1) report->open++;
-        else report->crowded++;
+        else report->non_manifold++;
     }
 }
 

@@ -54,7 +54,7 @@ static tobi_status try_weld(tobi_mesh *mesh, double tolerance, const char *mark,
     tobi_status status = tobi_mesh_weld(&copy, tolerance, mark);
     if (status == TOBI_OK) status = count_faults(&copy, &opposite, &after);
     if (status == TOBI_OK && copy.triangle_count && after.open < report->open &&
-        after.open + after.crowded < report->open + report->crowded) {
+        after.open + after.non_manifold < report->open + report->non_manifold) {
         copy.texture = mesh->texture;
         mesh->texture = NULL;
         swap_meshes(mesh, &copy);
@@ -261,19 +261,19 @@ static tobi_status split_vertices(tobi_mesh *mesh, const int32_t *opposite)
     return TOBI_OK;
 }
 
-/* The half-edges of crowded edges, by edge and by angle around it; *out is malloced. */
+/* The half-edges of non-manifold edges, by edge and by angle around it; *out is malloced. */
 static tobi_status find_spokes(const tobi_mesh *mesh, const int32_t (*opposite)[3], spoke **out,
                                int64_t *count)
 {
     int64_t n = 0;
-    for (int64_t h = 0; h < 3*mesh->triangle_count; h++) n += opposite[h/3][h % 3] == TOBI_EDGE_CROWDED;
+    for (int64_t h = 0; h < 3*mesh->triangle_count; h++) n += opposite[h/3][h % 3] == TOBI_EDGE_NON_MANIFOLD;
     spoke *s = malloc((size_t)(n + 1)*sizeof *s);
     *out = s;
     *count = n;
     if (!s) return TOBI_NO_MEMORY;
     n = 0;
     for (int64_t h = 0; h < 3*mesh->triangle_count; h++) {
-        if (opposite[h/3][h % 3] != TOBI_EDGE_CROWDED) continue;
+        if (opposite[h/3][h % 3] != TOBI_EDGE_NON_MANIFOLD) continue;
         int32_t a = mesh->triangles[h/3][h % 3], b = mesh->triangles[h/3][(h % 3 + 1) % 3];
         s[n] = (spoke){0, (int32_t)h, a < b, a < b ? a : b, a < b ? b : a};
         measure_angle(mesh, &s[n++]);
@@ -314,8 +314,8 @@ static void cut_triangle(tobi_mesh *mesh, int32_t half, int32_t m)
     t[next] = m;
 }
 
-/* Parts the edges that still are crowded (now) by middle vertices for all pairs (paired) but the first. A
-   triangle is cut once in a call; *cuts is how many pairs were. */
+/* Parts the edges that still are non-manifold (now) by middle vertices for all pairs (paired) but the first.
+   A triangle is cut once in a call; *cuts is how many pairs were. */
 static tobi_status cut_edges(tobi_mesh *mesh, const int32_t (*now)[3], const int32_t *paired, int64_t *cuts)
 {
     spoke *s;
@@ -347,19 +347,19 @@ static tobi_status cut_edges(tobi_mesh *mesh, const int32_t (*now)[3], const int
     return fits ? TOBI_OK : TOBI_NO_MEMORY;
 }
 
-/* Takes edges apart until none is crowded, or only such where no pairs can be made. opposite is that of
+/* Takes edges apart until none is non-manifold, or only such where no pairs can be made. opposite is that of
    the mesh and is freed. */
-static tobi_status part_crowded(tobi_mesh *mesh, int32_t (*opposite)[3], tobi_edge_report report)
+static tobi_status part_non_manifold(tobi_mesh *mesh, int32_t (*opposite)[3], tobi_edge_report report)
 {
     tobi_status status = TOBI_OK;
     tobi_mesh_note(mesh, "%lld edges with more than two triangles taken apart: parts that touch there stay "
-                   "apart", (long long)report.crowded);
-    for (int64_t cuts = 1; status == TOBI_OK && report.crowded && cuts;) {
+                   "apart", (long long)report.non_manifold);
+    for (int64_t cuts = 1; status == TOBI_OK && report.non_manifold && cuts;) {
         int32_t (*now)[3] = NULL;
         cuts = 0;
         status = split_edges(mesh, opposite);
         if (status == TOBI_OK) status = count_faults(mesh, &now, &report);
-        if (status == TOBI_OK && report.crowded)
+        if (status == TOBI_OK && report.non_manifold)
             status = cut_edges(mesh, (const int32_t (*)[3])now, &opposite[0][0], &cuts);
         free(now);
         if (status == TOBI_OK && cuts) status = count_faults(mesh, &opposite, &report);
@@ -373,7 +373,7 @@ tobi_status tobi_mesh_mend(tobi_mesh *mesh)
     int32_t (*opposite)[3] = NULL;
     tobi_edge_report report = {0};
     tobi_status status = count_faults(mesh, &opposite, &report);
-    if (status == TOBI_OK && report.crowded) {
+    if (status == TOBI_OK && report.non_manifold) {
         status = drop_double_triangles(mesh);
         if (status == TOBI_OK) status = count_faults(mesh, &opposite, &report);
     }
@@ -382,7 +382,7 @@ tobi_status tobi_mesh_mend(tobi_mesh *mesh)
         if (status == TOBI_OK) status = drop_double_triangles(mesh);
         if (status == TOBI_OK) status = count_faults(mesh, &opposite, &report);
     }
-    if (status == TOBI_OK && report.crowded) return part_crowded(mesh, opposite, report);
+    if (status == TOBI_OK && report.non_manifold) return part_non_manifold(mesh, opposite, report);
     free(opposite);
     return status;
 }

@@ -66,16 +66,16 @@ static tobi_status allocate_work(orient_work *w, int64_t n)
                ? TOBI_OK : TOBI_NO_MEMORY;
 }
 
-static tobi_status fail_crowded(const tobi_mesh *mesh, const orient_work *w, const tobi_edge_report *r,
-                                tobi_error *err)
+static tobi_status fail_non_manifold(const tobi_mesh *mesh, const orient_work *w, const tobi_edge_report *r,
+                                     tobi_error *err)
 {
     const double *a = mesh->vertices[r->ends[0]], *b = mesh->vertices[r->ends[1]];
     return tobi_fail(err, TOBI_INVALID, "mesh '%s' does not say what is inside: %lld edges with more than "
                      "two triangles and %lld with one, the first from (%.6g, %.6g, %.6g) to "
                      "(%.6g, %.6g, %.6g): sheets without thickness? %s",
-                     w->name, (long long)r->crowded, (long long)r->open, a[0], a[1], a[2], b[0], b[1], b[2],
-                     w->what == OPEN ? "A vessel is open at its top alone, also in 2-D"
-                                     : "A closed surface is needed");
+                     w->name, (long long)r->non_manifold, (long long)r->open, a[0], a[1], a[2], b[0], b[1],
+                     b[2], w->what == OPEN ? "A vessel is open at its top alone, also in 2-D"
+                                             : "A closed surface is needed");
 }
 
 /* True if half-edges h and g run from the same vertex, that is, if their triangles disagree. */
@@ -341,15 +341,15 @@ static tobi_status orient_mesh(tobi_mesh *mesh, orient_work *w, tobi_error *err)
     tobi_edge_report report = {0};
     TOBI_TRY(tobi_edges_match(mesh->vertex_count, mesh->triangle_count,
                               (const int32_t (*)[3])mesh->triangles, w->opposite, &report));
-    if (report.open || report.crowded) TOBI_TRY(tobi_mesh_mend(mesh));
+    if (report.open || report.non_manifold) TOBI_TRY(tobi_mesh_mend(mesh));
     TOBI_TRY(flood_mesh(mesh, w, &report, err));
     if (w->turned)
         tobi_mesh_note(mesh, "%lld of %lld triangles turned to agree with their neighbours",
                        (long long)w->turned, (long long)mesh->triangle_count);
-    if (report.crowded) return fail_crowded(mesh, w, &report, err);
+    if (report.non_manifold) return fail_non_manifold(mesh, w, &report, err);
     int patched = report.open > 0;
     if (patched) TOBI_TRY(close_holes(mesh, w, &report, err));
-    if (report.open || report.crowded) return fail_crowded(mesh, w, &report, err);
+    if (report.open || report.non_manifold) return fail_non_manifold(mesh, w, &report, err);
     TOBI_TRY(measure_shells(mesh, &w->shells));
     TOBI_TRY(turn_shells(mesh, w, err));
     if (w->what == OPEN) {

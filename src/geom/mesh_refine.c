@@ -147,7 +147,7 @@ tobi_status tobi_mesh_refine(tobi_mesh *mesh, double max_edge, tobi_error *err)
     if (r.opposite)
         status = tobi_edges_match(mesh->vertex_count, mesh->triangle_count,
                                   (const int32_t (*)[3])mesh->triangles, r.opposite, &report);
-    if (status == TOBI_OK && (report.open || report.crowded))
+    if (status == TOBI_OK && (report.open || report.non_manifold))
         status = tobi_fail(err, TOBI_INVALID, "only a closed mesh can be refined");
     else if (status == TOBI_OK)
         status = split_all(&r, max_edge, err);

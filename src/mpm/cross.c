@@ -1,4 +1,4 @@
-/* At a node where cuts cross the particles vote again in each branch of the tree that the cuts so far make;
+/* At a node where cuts cross the particles decide again in each branch of the tree that the cuts so far make;
    what a particle does not know leaves it with the side that outweighs. Pairs of leaves are parted by the
    cut at which their ways part, and by deeper ones that face each other. The drawback is that each node
    walks over all members near its block. */

@@ -170,7 +170,7 @@ static int find_wanted(const mpm_cut *c, const mpm_grid *g, const mpm_patch *p, 
     return any;
 }
 
-/* Adds the votes of one particle to the wanted nodes of a block that feel it. */
+/* Counts one particle on its side at the wanted nodes of a block that feel it. */
 static void add_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v, const mpm_patch *p,
                           const node_sides *q, int64_t i, mpm_majority majorities[][MPM_MAJORITIES])
 {

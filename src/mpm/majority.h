@@ -1,5 +1,5 @@
-/* Particles that remember a cut vote on which nodes have two velocities, whose the first is, and how far
-   apart the faces are there. docs/theory/cutting.md. */
+/* Particles that remember a cut decide by majority which nodes have two velocities, whose the first is, and
+   how far apart the faces are there. docs/theory/cutting.md. */
 #pragma once
 #include "exec/rows.h"
 #include "mpm/cut.h"

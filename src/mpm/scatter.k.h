@@ -164,8 +164,9 @@ TOBI_FN void mpm_find_targets(const mpm_view *v, int64_t number, tobi_float4 *ow
     t->side = b->levels > 0 ? v->sides + (int64_t)b->sides*MPM_SIDES : NULL;
 }
 
-/* Where a block's particles add to: their tile alone, its twins too, all targets. */
-enum { MPM_PLAIN, MPM_SPLIT, MPM_CALM };
+/* Where a block's particles add to: their tile alone, its twins too, and those of what feels no
+   stress. */
+enum { MPM_PLAIN, MPM_SPLIT, MPM_UNSTRESSED };
 
 /* Returns the kinetic energy that damping takes, J. */
 TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, const mpm_targets *t, mpm_reach *reach,
@@ -192,7 +193,7 @@ TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, const mpm_ta
                 cell.hidden = hidden;
             }
             mpm_add_particle(&cell, &s, &load, k, dim, bent);
-            if (kind != MPM_CALM) continue;
+            if (kind != MPM_UNSTRESSED) continue;
             const quad momentum = quad_load(&load.momentum[k]);
             if (mpm_is_hidden(&hidden))
                 mpm_add_split(t->unstressed, levels, &s, k, &hidden, momentum, zero, dim);
@@ -206,7 +207,7 @@ TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, const mpm_ta
 TOBI_FN double mpm_add_kind(const mpm_view *v, const mpm_block *b, const mpm_targets *t, mpm_reach *reach,
                             const int dim, const int bent)
 {
-    if (t->unstressed[0]) return mpm_add_block(v, b, t, reach, dim, MPM_CALM, bent);
+    if (t->unstressed[0]) return mpm_add_block(v, b, t, reach, dim, MPM_UNSTRESSED, bent);
     if (b->levels > 0) return mpm_add_block(v, b, t, reach, dim, MPM_SPLIT, bent);
     return mpm_add_block(v, b, t, reach, dim, MPM_PLAIN, bent);
 }

@@ -148,7 +148,7 @@ static bool is_near(void *user, int32_t i)
     return distance2(n->x, n->t->out->point[i], n->t->dimension) < n->least2;
 }
 
-static bool is_crowded(const tracer *t, const double x[3], double least)
+static bool is_near_line(const tracer *t, const double x[3], double least)
 {
     nearness n = { t, x, least*least };
     return visit(&t->lines, t->dimension, x, is_near, &n);
@@ -165,7 +165,7 @@ static int follow(const tracer *t, const double seed[3], double sign, double (*t
     *closed = false;
     while (n < room && take_step(t, x, sign)) {
         if (n > 8 && distance2(x, seed, t->dimension) < step2) return *closed = true, n;
-        if (is_crowded(t, x, 0.5*t->apart)) break;
+        if (is_near_line(t, x, 0.5*t->apart)) break;
         for (int k = own; k < n - own; k += 2)      /* beside its beginning it may be about to close */
             if (distance2(x, to[k], t->dimension) < near2) return n;
         memcpy(to[n++], x, sizeof x);
@@ -273,7 +273,7 @@ static bool try_seeds(tracer *t)
         double x[3] = { 0, 0, 0 };
         if (!is_shown(t, i)) continue;
         for (int a = 0; a < t->dimension; a++) x[a] = t->f->positions[i][a];
-        if (put_in_plane(t, x) && !is_crowded(t, x, t->apart)) enough = add_line(t, x, room);
+        if (put_in_plane(t, x) && !is_near_line(t, x, t->apart)) enough = add_line(t, x, room);
     }
     free(room);
     return enough;

@@ -27,7 +27,7 @@ typedef struct surface_view {
     int32_t low[3], high[3];     /* nodes within the flat sides */
     float *node;                 /* level set minus its level, by block; -1 beyond flat sides */
     float level, alone;          /* count below which a particle has nothing around */
-    float crowded, scale;        /* count where strength falls more slowly; density of one particle */
+    float dense, scale;          /* count where strength falls more slowly; density of one particle */
 
     tobi_float4 *vertex;         /* w: how far it is smoothed, by the particles around */
     const int32_t *block_of, *of;
@@ -55,9 +55,9 @@ TOBI_FN int64_t surface_find_bin(const surface_view *v, uint64_t key)
 TOBI_FN float surface_strength(const surface_view *v, float s)
 {
     if (s < v->alone) return 0;
-    const float root = sqrtf(v->scale*(s > v->crowded ? s : v->crowded));
+    const float root = sqrtf(v->scale*(s > v->dense ? s : v->dense));
     const float power = 1/(root*sqrtf(root));
-    return v->scale*(s > v->crowded ? power : power*v->crowded/s);
+    return v->scale*(s > v->dense ? power : power*v->dense/s);
 }
 
 /* Sum of (1 - q^2)^3 over particles [begin, end). */

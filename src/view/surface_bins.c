@@ -246,7 +246,7 @@ tobi_status surface_place_points(surface_work *w, tobi_error *err)
     w->view.scale = (float)share;
     w->view.level = 0.5765f;
     w->view.alone = 1.02f;
-    w->view.crowded = (float)(0.55/share);
+    w->view.dense = (float)(0.55/share);
     TOBI_TRY(size_grid(w, err));
     int64_t *begin = malloc(((size_t)w->def->particle_count + 1)*sizeof *begin);
     if (!begin) return surface_no_memory(err, 8.0*(double)w->def->particle_count);

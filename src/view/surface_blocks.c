@@ -143,7 +143,7 @@ tobi_status surface_find_drops(surface_work *w, tobi_error *err)
     const int32_t *group = w->def->group;
     for (int64_t k = 0; k < w->points; k++) {
         const int32_t i = w->of[k];
-        if (i < 0 || w->count[k] > w->view.crowded) continue;
+        if (i < 0 || w->count[k] > w->view.dense) continue;
         if (w->strength[k] > 0 && is_covered(w, k, group ? (uint64_t)group[i] : 0)) continue;
         w->drop[w->drops++] = i;
     }

@@ -59,7 +59,7 @@ static void check_counts(const rig *r)
         for (int64_t k = 0; k < r->w.points; k++)
             if (group_of(r, k) == group_of(r, i)) sum += kernel(r, k, at);
         expect(r->w.count[i], sum);
-        if (sum >= r->w.view.crowded*1.001) expect(r->w.strength[i],
+        if (sum >= r->w.view.dense*1.001) expect(r->w.strength[i],
                                                    r->w.view.scale*pow(r->w.view.scale*sum, -0.75));
     }
 }

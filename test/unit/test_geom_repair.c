@@ -300,7 +300,7 @@ static void is_closed(const tobi_mesh *mesh)
     int32_t (*opposite)[3] = malloc((size_t)mesh->triangle_count*sizeof *opposite);
     OK(tobi_edges_match(mesh->vertex_count, mesh->triangle_count, (const int32_t (*)[3])mesh->triangles,
                         opposite, &report));
-    assert_int_equal(report.open + report.crowded, 0);
+    assert_int_equal(report.open + report.non_manifold, 0);
     free(opposite);
 }
 
