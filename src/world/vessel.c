@@ -19,6 +19,8 @@ static const double CELLS_MOST = 4e8;
 /* Coordinates are those of the box: from the domain's lower corner. */
 typedef struct flood {
     const tobi_body *b;
+    const tobi_body *wall;           /* whose walls part compartments: the vessel, or all bodies        */
+    int walls;
     double d, lower[3], up[3];
     int dimension, up_axis;          /* up_axis: the one that up follows, -1 = none                     */
     double level;                    /* m, along up                                                     */
@@ -56,12 +58,28 @@ static double height(const flood *f, const double x[3])
     return h;
 }
 
+static int is_inside(const flood *f, const double x[3])
+{
+    for (int k = 0; k < f->walls; k++)
+        if (tobi_bvh_inside(f->wall[k].bvh, x)) return 1;
+    return 0;
+}
+
+static int is_parted(const flood *f, const double from[3], const double to[3])
+{
+    for (int k = 0; k < f->walls; k++)
+        if (tobi_bvh_segment_hits(f->wall[k].bvh, from, to)) return 1;
+    return 0;
+}
+
 /* Inside of the walls, or on their surface, which rounding may put on either side: a cell there belongs to
    nobody, or those along a wall's outside would be a compartment. */
 static int is_wall(const flood *f, const double x[3])
 {
     tobi_bvh_hit hit;
-    return tobi_bvh_inside(f->b->bvh, x) || tobi_bvh_closest(f->b->bvh, x, ON_SURFACE*f->d, &hit);
+    for (int k = 0; k < f->walls; k++)
+        if (tobi_bvh_closest(f->wall[k].bvh, x, ON_SURFACE*f->d, &hit)) return 1;
+    return is_inside(f, x);
 }
 
 static void mark_range(const void *view, int64_t begin, int64_t end)
@@ -77,7 +95,7 @@ static void mark_range(const void *view, int64_t begin, int64_t end)
         for (int a = 0; a < f->dimension; a++) {
             memcpy(next, x, sizeof next);
             next[a] += f->d;
-            if (at[a] + 1 < f->n[a] && !tobi_bvh_segment_hits(f->b->bvh, x, next))
+            if (at[a] + 1 < f->n[a] && !is_parted(f, x, next))
                 f->mark[c] = (uint8_t)(f->mark[c] | LINK << a);
         }
     }
@@ -185,11 +203,13 @@ static int64_t find_cell(const flood *f, const double x[3])
     return c;
 }
 
+static int has_seed(const tobi_region *r) { return r->seed[0] > -1e9; }
+
 /* The compartment that is asked for: 0 = all, -1 = there is none. */
 static int choose(const flood *f, const tobi_region *r, const double lower[3])
 {
     double seed[3];
-    if (r->seed[0] <= -1e9) return f->compartments > 0 ? 0 : -1;
+    if (!has_seed(r)) return f->compartments > 0 ? 0 : -1;
     for (int a = 0; a < 3; a++) seed[a] = r->seed[a] - lower[a];
     const int64_t c = find_cell(f, seed);
     return c >= 0 && f->label[c] > 0 ? f->label[c] : -1;
@@ -221,7 +241,7 @@ static tobi_status find_nothing(const flood *f, const tobi_region *r, const char
     return tobi_fail(err, TOBI_INVALID, "%s: fill[%d] finds nothing to fill in vessel '%s' below a level of "
                      "%g m%s: it leaks at its lowest place, stands above the level, or its cells of one "
                      "spacing, %g m, are too coarse for it", whose, r->number, f->b->name, r->level,
-                     r->seed[0] > -1e9 ? " at the seed" : "", f->d);
+                     has_seed(r) ? " at the seed" : "", f->d);
 }
 
 /* No compartment at that level: says up to where there is one. */
@@ -257,7 +277,7 @@ static double reach_wall(const flood *f, const double x[3], int axis, double way
         const double middle = 0.5*(free + blocked);
         memcpy(to, x, sizeof to);
         to[axis] += middle*way*f->d;
-        if (tobi_bvh_segment_hits(f->b->bvh, x, to)) blocked = middle;
+        if (is_parted(f, x, to)) blocked = middle;
         else free = middle;
     }
     return x[axis] + free*way*f->d;
@@ -302,7 +322,7 @@ static int is_within(const flood *f, int label, const double x[3])
 {
     const int64_t own = find_cell(f, x);
     int64_t at[3];
-    if (own < 0 || tobi_bvh_inside(f->b->bvh, x) || height(f, x) > f->level) return 0;
+    if (own < 0 || is_inside(f, x) || height(f, x) > f->level) return 0;
     split(f, own, at);
     for (int64_t k = at[2] - 1; k <= at[2] + 1; k++)
         for (int64_t j = at[1] - 1; j <= at[1] + 1; j++)
@@ -312,7 +332,7 @@ static int is_within(const flood *f, int label, const double x[3])
                 const int64_t c = i + j*f->stride[1] + k*f->stride[2];
                 if (f->label[c] != label) continue;
                 place(f, c, y);
-                if (!tobi_bvh_segment_hits(f->b->bvh, x, y)) return 1;
+                if (!is_parted(f, x, y)) return 1;
             }
     return 0;
 }
@@ -439,9 +459,10 @@ static tobi_status check_overlap(const flood *f, int label, const tobi_world *w,
         TOBI_TRY(find_shared(f, label, other, w->system[0].box.lower, x, &found, err));
         if (found)
             return tobi_fail(err, TOBI_INVALID, "%s: what fill[%d] fills of vessel '%s' overlaps another "
-                             "region, fill[%d] of %s, at (%.4g, %.4g, %.4g) m: leave the vessel out of that "
-                             "one", whose, r->number, f->b->name, other->number, name_owner(w, other, text),
-                             x[0], x[1], x[2]);
+                             "region, fill[%d] of %s, at (%.4g, %.4g, %.4g) m: %s", whose, r->number,
+                             f->b->name, other->number, name_owner(w, other, text), x[0], x[1], x[2],
+                             has_seed(r) && other->in_vessel ? "no wall that reaches above both levels parts "
+                             "the seeds" : "leave the vessel out of that one");
     }
     return TOBI_OK;
 }
@@ -463,6 +484,9 @@ static tobi_status find_vessel(const tobi_world *w, const tobi_region *r, const 
     f->d = w->sim.def.spacing;
     const int body = tobi_world_find_body(w, r->vessel);
     if (body >= 0) f->b = &w->sim.bodies[body];
+    /* where one compartment is meant, bulkheads that are bodies of their own part it from the others */
+    f->wall = has_seed(r) ? w->sim.bodies : f->b;
+    f->walls = has_seed(r) ? w->sim.body_count : 1;
     if (!f->b || !f->b->vessel)
         return blame(w, r, "vessel", tobi_fail(err, TOBI_INVALID, "%s: fill[%d] fills '%s', which is no %s",
                                                whose, r->number, r->vessel, f->b ? "vessel" : "body"), err);

@@ -171,7 +171,7 @@ static void test_levels(void **state)
     assert_in_range(ball, 840, 928);          /* 2/3 pi 0.75^3/0.001 = 884 */
 }
 
-/* Two rooms: a wall in the middle of the cube. */
+/* Two cups, and a seed. */
 static void test_compartments(void **state)
 {
     (void)state;
@@ -183,6 +183,30 @@ static void test_compartments(void **state)
     assert_int_equal(fill(cup, "{ \"vessel\": \"cup\", \"level\": 0.5, \"seed\": [0.5, 0.5, 0.1] }"), 500);
     refuse(cup, "{ \"vessel\": \"cup\", \"level\": 0.5, \"seed\": [1.7, 0.5, 0.1] }", "",
            "fill[0] finds nothing to fill in vessel 'cup' below a level of 0.5 m at the seed");
+}
+
+/* Bulkheads that are bodies of their own part a box into rooms of 0.4 and 0.5 m; one that moves, too. */
+static void test_bulkheads(void **state)
+{
+    (void)state;
+    static const char left[] = "{ \"vessel\": \"box\", \"level\": 0.5, \"seed\": [0.1, 0.5, 0.1] }";
+    static const char right[] = "{ \"vessel\": \"box\", \"level\": 0.3, \"seed\": [0.9, 0.5, 0.1] }";
+    char parted[700], both[300];
+    for (int moves = 0; moves < 2; moves++) {
+        snprintf(parted, sizeof parted, "%s, { \"name\": \"bulkhead\", \"box\": { \"min\": [0.4, 0, 0], "
+                 "\"max\": [0.5, 1, 0.6] } %s }", box, moves ? ", \"motion\": { \"translation\": "
+                 "{ \"velocity\": [0, 0, 1], \"start\": 0.5 } }" : "");
+        assert_int_equal(fill(parted, left), 4*10*5);
+        assert_int_equal(fill(parted, right), 5*10*3);
+        snprintf(both, sizeof both, "%s, %s", left, right);
+        assert_int_equal(fill(parted, both), 4*10*5 + 5*10*3);
+    }
+    /* without a seed all of the vessel, but for the bulkhead */
+    assert_int_equal(fill(parted, "{ \"vessel\": \"box\", \"level\": 0.5 }"), 9*10*5);
+    /* over a bulkhead that is too low the rooms are one */
+    snprintf(parted, sizeof parted, "%s, { \"name\": \"sill\", \"box\": { \"min\": [0.4, 0, 0], "
+             "\"max\": [0.5, 1, 0.2] } }", box);
+    refuse(parted, both, "", "no wall that reaches above both levels parts the seeds");
 }
 
 /* A block of ice, half in the water of a cup: the water starts around it. */
@@ -332,7 +356,8 @@ int main(void)
              "\"max\": [1, 1, 1] } }");
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_channel), cmocka_unit_test(test_walls),       cmocka_unit_test(test_levels),
-        cmocka_unit_test(test_compartments), cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_compartments), cmocka_unit_test(test_bulkheads),
+        cmocka_unit_test(test_mistakes),
         cmocka_unit_test(test_solid_inside), cmocka_unit_test(test_walls_on_cells),
         cmocka_unit_test(test_later_fluids),
         cmocka_unit_test(test_wrong_calls),
