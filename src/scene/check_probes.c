@@ -60,11 +60,13 @@ static void check_keys(const one *o, tobi_bound bound)
     }
 }
 
-static void check_sizes(const one *o)
+static void check_sizes(const one *o, uint64_t given)
 {
     const tobi_probe_def *d = o->def;
     const int flat = o->scene->world.dimension == 2;
-    if (d->kind == TOBI_PROBE_RUN_UP) {
+    if (d->kind == TOBI_PROBE_RUN_UP && !tobi_bind_has(&tobi_probe_table, given, "end"))
+        tell(o, "end", "is missing: a run-up is a line");
+    else if (d->kind == TOBI_PROBE_RUN_UP) {
         check_inside(o, "end", d->end);
         if (memcmp(d->end, d->position, sizeof d->end) == 0) tell(o, "end", "is where the run-up begins");
     }
@@ -129,7 +131,7 @@ void tobi_check_probes(const tobi_scene *scene, tobi_source *source)
         const tobi_bound bound = scene->probes_bound[i];
         check_keys(&o, bound);
         if (bound.given != bound.good) continue;
-        check_sizes(&o);
+        check_sizes(&o, bound.given);
         check_body(&o);
         check_rate(&o);
     }

@@ -37,6 +37,11 @@ tobi_status tobi_world_add_damping(tobi_world *w, const tobi_damping_def *def, t
                                               "to %g m in %c: allowed are upper corners above the lower ones",
                                               def->box_min[a], def->box_max[a], "xyz"[a]), "box.max");
     }
+    for (int a = 0; a < box->dimension; a++)
+        if (!(zone.lower[a] < box->size[a] && zone.upper[a] > 0))
+            return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "a damping zone lies from %g to %g m in %c, "
+                                              "outside of the domain", def->box_min[a], def->box_max[a],
+                                              "xyz"[a]), "box");
     if (!(size > 0))
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "the direction of a damping zone has no length"),
                            "direction");

@@ -170,6 +170,32 @@ static double start_of(const tobi_opening *o, const tobi_inlet_column *c, int64_
     return ((double)layer + c->phase)*o->step - o->depth;
 }
 
+/* A place in the buffer of an opening. */
+static int is_in_buffer(const tobi_opening *o, const tobi_smoothing_constants *c, const double x[3])
+{
+    double at[3];
+    tobi_opening_locate(o, x, at);
+    return tobi_opening_faces(o, at) && (o->outlet ? at[0] > 0 && at[0] < tobi_outlet_depth(o, c)
+                                                   : at[0] < 0 && at[0] > -o->depth);
+}
+
+/* Two buffers at one place would crowd it, or one takes what the other gives. */
+static tobi_status check_others(const tobi_world *w, const tobi_opening *o, const double x[3],
+                                tobi_error *err)
+{
+    char text[200];
+    for (int k = 0; k < w->sim.opening_count; k++) {
+        const tobi_opening *other = &w->sim.openings[k];
+        if (other == o || !is_in_buffer(other, &w->system[0].smoothing, x)) continue;
+        const double *lower = w->system[0].box.lower;
+        snprintf(text, sizeof text, "has its buffer where %s '%s' has its own, at (%.4g, %.4g, %.4g) m",
+                 other->outlet ? "outlet" : "inlet", other->name, x[0] + lower[0], x[1] + lower[1],
+                 x[2] + lower[2]);
+        return refuse_start(w, o, "centre", text, err);
+    }
+    return TOBI_OK;
+}
+
 static tobi_status check_point(const tobi_world *w, const tobi_opening *o, const double x[3],
                                tobi_error *err)
 {
@@ -301,6 +327,10 @@ tobi_status tobi_world_add_outlet(tobi_world *w, const tobi_outlet_def *def, tob
     const int pressure = def->pressure >= 0, level = def->level > TOBI_NO_LEVEL;
     o.gives = pressure ? TOBI_GIVES_PRESSURE : level ? TOBI_GIVES_LEVEL : TOBI_GIVES_NOTHING;
     set_name(&o, def->name, def->centre, box);
+    const double *g = w->sim.def.gravity;
+    if (level && !(g[0]*g[0] + g[1]*g[1] + g[2]*g[2] > 0))
+        return refuse(&o, "level", "has a level, and without gravity nothing is up; allowed is a pressure",
+                      err);
     if (pressure && level)
         return refuse(&o, "pressure", "has a level and a pressure; it may have one", err);
     TOBI_TRY(set_axes(&o, def->normal, def->along, box->dimension, err));
@@ -395,9 +425,12 @@ tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err)
         TOBI_TRY(check_bodies(w, o, err));
         const int64_t layers = count_layers(o);
         for (int64_t c = 0; c < o->column_count; c++)
-            for (int64_t l = 0; l < layers; l++)
-                put(s, o, &o->columns[c], start_of(o, &o->columns[c], l), w->sim.time,
-                    tobi_particles_add(&s->particles));
+            for (int64_t l = 0; l < layers; l++) {
+                const int64_t i = tobi_particles_add(&s->particles);
+                put(s, o, &o->columns[c], start_of(o, &o->columns[c], l), w->sim.time, i);
+                const tobi_double3 *p = &s->particles.position[i];
+                TOBI_TRY(check_others(w, o, (double[3]){ p->x, p->y, p->z }, err));
+            }
     }
     return TOBI_OK;
 }
@@ -513,38 +546,6 @@ static tobi_status follow(tobi_world *w, tobi_opening *o, tobi_error *err)
     return TOBI_OK;
 }
 
-static double measure_domain(const tobi_system *s)
-{
-    double size = 1;
-    for (int a = 0; a < s->box.dimension; a++) size *= s->box.size[a];
-    return size;
-}
-
-double tobi_openings_share(const tobi_system *s)
-{
-    int inlets = 0;
-    for (int k = 0; k < s->sim->opening_count; k++) {
-        if (s->sim->openings[k].outlet) return 0;
-        inlets++;
-    }
-    return inlets ? (double)s->particles.count*s->smoothing.volume/measure_domain(s) : 0;
-}
-
-/* How much more liquid than the whole domain holds is no rounding of a lattice. */
-static const double OVERFULL = 1.05;
-
-/* Liquid that inlets press into a domain without room and without an outlet has no pressure that is right:
-   methods crowd it, and then it is thrown about. */
-static tobi_status check_room(const tobi_world *w, tobi_error *err)
-{
-    const double fill = tobi_openings_share(&w->system[0]), room = measure_domain(&w->system[0]);
-    const char *unit = w->system[0].box.dimension == 2 ? "m2" : "m3";
-    if (fill < OVERFULL) return TOBI_OK;
-    return tobi_fail(err, TOBI_DIVERGED, "the inlets have overfilled the domain at t = %.9g s: %.4g %s of "
-                     "liquid, the domain has %.4g %s; stop the inlets before, add an outlet, or make the "
-                     "domain larger", w->sim.time, fill*room, unit, room, unit);
-}
-
 tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err)
 {
     tobi_system *s = &w->system[0];
@@ -557,7 +558,7 @@ tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err)
     s->info.mass_in = mass*(double)s->info.particles_in;
     s->info.mass_out = mass*(double)s->info.particles_out;
     s->info.fluid_particles = s->particles.count;
-    return check_room(w, err);
+    return tobi_openings_check_room(w, err);
 }
 
 void tobi_openings_get(const tobi_world *w, double way[TOBI_OPENING_LIMIT])
@@ -568,32 +569,4 @@ void tobi_openings_get(const tobi_world *w, double way[TOBI_OPENING_LIMIT])
 void tobi_openings_set(tobi_world *w, const double way[TOBI_OPENING_LIMIT])
 {
     for (int k = 0; k < w->sim.opening_count; k++) w->sim.openings[k].way = way[k];
-}
-
-/* Share of the domain from which liquid leaves no room for a free surface, but in the buffers. */
-static const double FULL = 0.8;
-
-/* The name of an outlet without a pressure, or NULL. */
-static const char *find_free_outlet(const tobi_simulation *s)
-{
-    for (int k = 0; k < s->opening_count; k++)
-        if (s->openings[k].outlet && s->openings[k].gives == TOBI_GIVES_NOTHING) return s->openings[k].name;
-    return NULL;
-}
-
-tobi_status tobi_openings_note(tobi_world *w, tobi_error *err)
-{
-    const tobi_system *s = &w->system[0];
-    const char *outlet = find_free_outlet(&w->sim);
-    char text[300];
-    if (w->sim.opening_count == 0 || (s->method->fills_pipes && !outlet)) return TOBI_OK;
-    if ((double)s->particles.count*s->smoothing.volume < FULL*measure_domain(s)) return TOBI_OK;
-    if (s->method->fills_pipes)
-        snprintf(text, sizeof text, "where the pressure falls below 0 a full pipe gets cavities (mass_held "
-                 "in history.csv falls); a pressure of the outlet '%s', density x speed^2 of the fastest "
-                 "place, keeps it full\n", outlet);
-    else
-        snprintf(text, sizeof text, "%s crowds or loses liquid where inlets and outlets leave no free "
-                 "surface, as in a full pipe; isph keeps it\n", s->method->name);
-    return tobi_world_add_notes(w, "world", "method", text, err);
 }

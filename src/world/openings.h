@@ -4,8 +4,8 @@
 
 /* Rows that the buffers of inlets have at the start. */
 int64_t tobi_openings_count(const tobi_world *w);
-/* Adds them behind the regions' particles, for which there must be room. TOBI_INVALID for an inlet in a body,
-   an outlet that faces inwards. */
+/* Adds them behind the regions' particles, for which there must be room. TOBI_INVALID for an inlet in a body
+   or in the buffer of another opening, an outlet that faces inwards. */
 tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err);
 /* Whether a place belongs to an opening at the start: regions leave it out. */
 int tobi_openings_cover(const tobi_simulation *s, const double x[3]);
@@ -13,6 +13,8 @@ int tobi_openings_cover(const tobi_simulation *s, const double x[3]);
 tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err);
 /* Volume of the liquid over that of the domain, where inlets bring more and no outlet takes any; else 0. */
 double tobi_openings_share(const tobi_system *s);
+/* TOBI_DIVERGED, in words, where they have brought more than the domain holds. */
+tobi_status tobi_openings_check_room(const tobi_world *w, tobi_error *err);
 /* Rows that are wanted, in their order, into w->chosen. Errors: no memory. */
 typedef int (*tobi_opening_wants)(const tobi_system *s, const tobi_opening *o, int64_t i);
 tobi_status tobi_openings_choose(tobi_world *w, tobi_opening_wants wants, const tobi_opening *o,

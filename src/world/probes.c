@@ -6,6 +6,8 @@
 #include "base/param.h"
 #include "geom/vec3.h"
 #include "world/names.h"
+#include "world/world.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +26,51 @@ static tobi_status check_place(const tobi_world *w, const tobi_probe_def *def, c
             return tobi_fail(err, TOBI_INVALID,
                              "probe '%s' sits outside the domain: %c = %g m, allowed is %g to %g m",
                              def->name, "xyz"[a], x[a], box->lower[a], box->lower[a] + box->size[a]);
+    return TOBI_OK;
+}
+
+/* Unit axes: up from normal, along made square to it, and up x along. */
+static void make_axes(const tobi_world *w, const tobi_probe_def *def, double axis[3][3])
+{
+    const int flat = w->sim.def.dimension == 2;
+    double *along = axis[0], *across = axis[1], *up = axis[2];
+    memcpy(up, def->normal, sizeof axis[2]);
+    memcpy(along, def->along, sizeof axis[0]);
+    if (vec3_length(up) == 0) up[flat ? 1 : 2] = 1;
+    const double size = vec3_length(up);
+    for (int a = 0; a < 3; a++) up[a] /= size;
+    double square = vec3_dot(along, up);
+    vec3_add_scaled(along, along, -square, up);
+    if (!(vec3_length(along) > 1e-9*vec3_length(def->along))) {      /* zero, or along the normal */
+        memset(along, 0, sizeof axis[0]);
+        if (flat) along[0] = up[1], along[1] = -up[0];
+        else along[fabs(up[0]) > 0.9] = 1;
+        square = vec3_dot(along, up);
+        vec3_add_scaled(along, along, -square, up);
+    }
+    const double length = vec3_length(along);
+    for (int a = 0; a < 3; a++) along[a] /= length;
+    vec3_cross(across, up, along);
+}
+
+/* Only what lies in the domain can be a wall: a patch that reaches out of it has a mean over less. */
+static tobi_status check_patch(const tobi_world *w, const tobi_probe_def *def, tobi_error *err)
+{
+    const tobi_box *box = &w->system[0].box;
+    const double slack = 1e-6*w->sim.def.spacing;
+    double axis[3][3];
+    if (def->kind != TOBI_PROBE_PATCH) return TOBI_OK;
+    make_axes(w, def, axis);
+    for (int a = 0; a < box->dimension; a++) {
+        const double half = 0.5*(def->length*fabs(axis[0][a]) + (box->dimension == 3) *
+                                 def->width*fabs(axis[1][a]));
+        const double low = def->position[a] - half, high = def->position[a] + half;
+        const double lower = box->lower[a], upper = box->lower[a] + box->size[a];
+        if (low >= lower - slack && high <= upper + slack) continue;
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "probe '%s': the patch reaches from %.6g to "
+                                          "%.6g m in %c, the domain from %.6g to %.6g m", def->name, low,
+                                          high, "xyz"[a], lower, upper), "length");
+    }
     return TOBI_OK;
 }
 
@@ -90,6 +137,7 @@ tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "probe '%s': the run-up ends where it begins",
                                           def->name), "end");
     TOBI_TRY(check_sizes(w, def, err));
+    TOBI_TRY(check_patch(w, def, err));
     TOBI_TRY(check_rate(w, def, err));
     TOBI_TRY(tobi_at_key(err, find_body(w, def, &body, err), "body"));
     if (w->probe_count == TOBI_PROBE_LIMIT)
@@ -102,6 +150,29 @@ tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_
     *p = (tobi_probe){ .def = *def, .body = body };
     p->def.name = p->def.body = NULL;
     snprintf(p->name, sizeof p->name, "%s", def->name);
+    return TOBI_OK;
+}
+
+/* What lies in a body has no liquid: its values are those of what the kernels reach, or 0. */
+tobi_status tobi_world_note_probes(tobi_world *w, tobi_error *err)
+{
+    const double deep = 0.5*w->sim.def.spacing;
+    for (int k = 0; k < w->probe_count; k++) {
+        const tobi_probe *p = &w->probes[k];
+        double x[3];
+        tobi_bvh_hit hit;
+        char text[240];
+        if (p->def.kind != TOBI_PROBE_POINT) continue;
+        for (int a = 0; a < 3; a++)
+            x[a] = a < w->sim.def.dimension ? p->def.position[a] - w->system[0].box.lower[a] : 0;
+        for (int b = 0; b < w->sim.body_count; b++) {
+            const tobi_bvh *bvh = w->sim.bodies[b].bvh;
+            if (!tobi_bvh_inside(bvh, x) || tobi_bvh_closest(bvh, x, deep, &hit)) continue;
+            snprintf(text, sizeof text, "lies deep in body '%s' at the start, where there is no liquid: let "
+                     "it lie on the surface\n", w->sim.bodies[b].name);
+            TOBI_TRY(tobi_world_add_notes(w, "probe", p->name, text, err));
+        }
+    }
     return TOBI_OK;
 }
 
@@ -130,30 +201,6 @@ static void carry(const tobi_body *b, double x[3])
     vec3_sub(arm, x, b->rest.centre);
     turn(b, arm);
     for (int a = 0; a < 3; a++) x[a] = b->centre[a] + arm[a];
-}
-
-/* Unit axes: up from normal, along made square to it, and up x along. */
-static void make_axes(const tobi_world *w, const tobi_probe_def *def, double axis[3][3])
-{
-    const int flat = w->sim.def.dimension == 2;
-    double *along = axis[0], *across = axis[1], *up = axis[2];
-    memcpy(up, def->normal, sizeof axis[2]);
-    memcpy(along, def->along, sizeof axis[0]);
-    if (vec3_length(up) == 0) up[flat ? 1 : 2] = 1;
-    const double size = vec3_length(up);
-    for (int a = 0; a < 3; a++) up[a] /= size;
-    double square = vec3_dot(along, up);
-    vec3_add_scaled(along, along, -square, up);
-    if (!(vec3_length(along) > 1e-9*vec3_length(def->along))) {      /* zero, or along the normal */
-        memset(along, 0, sizeof axis[0]);
-        if (flat) along[0] = up[1], along[1] = -up[0];
-        else along[fabs(up[0]) > 0.9] = 1;
-        square = vec3_dot(along, up);
-        vec3_add_scaled(along, along, -square, up);
-    }
-    const double length = vec3_length(along);
-    for (int a = 0; a < 3; a++) along[a] /= length;
-    vec3_cross(across, up, along);
 }
 
 static void make_box(const tobi_world *w, const tobi_probe *p, const tobi_body *b, tobi_sensor_box *box)

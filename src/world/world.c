@@ -227,6 +227,7 @@ static tobi_status start_bodies(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_note_starts(w, err));
     TOBI_TRY(tobi_world_note_units(w, err));
     TOBI_TRY(tobi_world_note_makers(w, err));
+    TOBI_TRY(tobi_world_note_probes(w, err));
     s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++)
         TOBI_TRY(tobi_body_predict(&s->bodies[k], 0, 1e-4, &s->body_speed, err));

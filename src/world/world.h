@@ -81,6 +81,8 @@ int tobi_world_first_material(const tobi_world *w, const tobi_system *s);
 tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tobi_error *err);
 /* Adds a note for each wave maker in a liquid whose method damps waves. */
 tobi_status tobi_world_note_makers(tobi_world *w, tobi_error *err);
+/* Adds a note for each probe of a point that begins deep in a body. */
+tobi_status tobi_world_note_probes(tobi_world *w, tobi_error *err);
 
 /* Keeps each line of notes (ended by \n) as a text of its own: "kind 'name': line", "kind line" if name is
    NULL. */

@@ -256,6 +256,12 @@ static void test_mistakes(void **state)
            "inlet 'in' has a normal of zero");
     refuse(PATCH "\"centre\": [0.2, 0.1], \"normal\": [1, 0], \"speed\": 1 }", "", "",
            "inlet 'in' has no width");
+    refuse("", POOL "0.1 }", "\"gravity\": [0, 0],", "outlet 'out' has a level, and without gravity");
+    /* an outlet that takes what an inlet gives; two inlets at one place */
+    refuse(IN "\"speed\": 1 }", "{ \"name\": \"out\", \"centre\": [0.2, 0.1], \"normal\": [-1, 0], "
+           "\"width\": 0.2 }", "", "inlet 'in' has its buffer where outlet 'out' has its own");
+    refuse(IN "\"speed\": 1 }, { \"name\": \"next\", \"centre\": [0.24, 0.1], \"normal\": [1, 0], "
+           "\"width\": 0.2, \"speed\": 1 }", "", "", "has its buffer where inlet 'next' has its own");
     refuse("", POOL "0.1, \"pressure\": 5 }", "",
            "outlets[0].pressure: outlet 'out' has a level and a pressure; it may have one");
     refuse("", "{ \"name\": \"out\", \"centre\": [0.4, 0.1], \"normal\": [1, 0], \"width\": 0.2 }",
@@ -344,6 +350,8 @@ static void test_wrong_calls(void **state)
         snprintf(name, sizeof name, "in%d", k);
         bad = in;
         bad.name = name;
+        bad.centre[1] = 0.1 + 0.2*(k%5);
+        bad.centre[2] = 0.05 + 0.1*(k/5);
         must(tobi_world_add_inlet(w, &bad, &err), &err);
     }
     refuse_inlet(w, &in, TOBI_UNSUPPORTED, "more than 32 inlets");

@@ -372,6 +372,17 @@ static void bad_sensors_are_refused(void **state)
     p.position[2] = 0;
     set_vector(p.normal, 0, 0, 1);
     refuses(flat, &p, TOBI_INVALID, "have no z in 2-D");
+    p = make("p", TOBI_PROBE_PATCH, 0, 0.1, 0.1);
+    set_vector(p.normal, 1, 0, 0);
+    set_sizes(&p, 0.1, 0.21, 0);
+    refuses(world, &p, TOBI_INVALID, "the patch reaches from -0.005 to 0.205 m in z, the domain "
+            "from 0 to 0.2 m");
+    set_sizes(&p, 0.2, 0.2, 0);
+    OK(tobi_world_add_probe(world, &p, &err));
+    p.position[2] = 0;
+    set_sizes(&p, 0.21, 0, 0);
+    refuses(flat, &p, TOBI_INVALID, "the patch reaches from -0.005 to 0.205 m in y, the domain "
+            "from 0 to 0.2 m");
     p = make("p", TOBI_PROBE_POINT, 0.1, 0.1, 0.1);
     p.body = "nobody";
     refuses(world, &p, TOBI_NOT_FOUND, "sits on the body 'nobody', which is not there");
@@ -454,6 +465,7 @@ static void scenes_tell_the_place(void **state)
     expect("\"kind\": \"flow\", \"width\": 0.1", "probes[0].length: is missing");
     expect("\"kind\": \"volume\", \"length\": 0.1, \"width\": 1", "probes[0].height: is missing");
     expect("\"end\": [0, 0, 0]", "probes[0].end: is for a run-up");
+    expect("\"kind\": \"run-up\"", "s.json:5:13: probes[0].end: is missing: a run-up is a line");
     expect("\"kind\": \"run-up\", \"end\": [0, 0, 2]", "probes[0].end: is 2 m in z");
     expect("\"kind\": \"run-up\", \"end\": [0.5, 0.5, 0.5]", "is where the run-up begins");
     expect("\"kind\": \"patch\", \"length\": 1, \"width\": 1, \"height\": 1",
@@ -466,6 +478,28 @@ static void scenes_tell_the_place(void **state)
     expect("\"rate\": 1001", "probes[0].rate: is 1001 Hz, more than a value per time step of 0.001 s");
     expect("\"rate\": 100, \"filter\": { \"cutoff\": 60 }",
            "probes[0].filter.cutoff: is 60 Hz, more than half of 100");
+}
+
+/* 2 cm deep in a block is more than half a spacing, 5 mm; on its face is where sensors sit. */
+static void a_point_deep_in_a_body_is_told(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        tobi_world *world = make_tank(2, 0, 0.1, "dfsph");
+        tobi_probe_def p = make("p", TOBI_PROBE_POINT, k ? 0.08 : 0.06, 0.02, 0);
+        tobi_body_def b = tobi_default_body_def();
+        int told = 0;
+        b.name = "block";
+        set_vector(b.box_min, 0.06, 0, 0);
+        set_vector(b.box_max, 0.12, 0.06, 0);
+        OK(tobi_world_add_body(world, &b, &err));
+        OK(tobi_world_add_probe(world, &p, &err));
+        OK(tobi_world_start(world, &err));
+        for (int n = 0; tobi_world_note(world, n); n++)
+            told += !!strstr(tobi_world_note(world, n), "probe 'p': lies deep in body 'block'");
+        assert_int_equal(told, k);
+        tobi_world_destroy(world);
+    }
 }
 
 static void a_deforming_body_holds_no_sensor(void **state)
@@ -497,6 +531,7 @@ int main(void)
         cmocka_unit_test(a_run_up_ends_at_the_surface), cmocka_unit_test(low_passes),
         cmocka_unit_test(bad_sensors_are_refused), cmocka_unit_test(rates_and_filters_are_checked),
         cmocka_unit_test(scenes_tell_the_place), cmocka_unit_test(a_deforming_body_holds_no_sensor),
+        cmocka_unit_test(a_point_deep_in_a_body_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -254,6 +254,10 @@ static void bad_zones_are_refused(void **state)
     d.direction[0] = 0;
     REFUSED(tobi_world_add_damping(w, &d, &err), TOBI_INVALID, "of a damping zone has no length");
     d = make_zone();
+    d.box_min[0] += 1;
+    d.box_max[0] += 1;
+    REFUSED(tobi_world_add_damping(w, &d, &err), TOBI_INVALID, "m in x, outside of the domain");
+    d = make_zone();
     REFUSED(tobi_world_add_damping(solids, &d, &err), TOBI_UNSUPPORTED, "mlsmpm knows no damping zones");
     for (int k = 0; k < 16; k++) OK(tobi_world_add_damping(w, &d, &err));
     REFUSED(tobi_world_add_damping(w, &d, &err), TOBI_UNSUPPORTED, "more than 16 damping zones");

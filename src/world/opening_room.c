@@ -1,0 +1,65 @@
+/* How much room inlets and outlets leave: for a free surface, and for more liquid. Drawback: bodies are not
+   taken from the domain, so that what they leave is less. */
+#include "world/openings.h"
+#include "base/error.h"
+#include <stdio.h>
+
+static double measure_domain(const tobi_system *s)
+{
+    double size = 1;
+    for (int a = 0; a < s->box.dimension; a++) size *= s->box.size[a];
+    return size;
+}
+
+double tobi_openings_share(const tobi_system *s)
+{
+    int inlets = 0;
+    for (int k = 0; k < s->sim->opening_count; k++) {
+        if (s->sim->openings[k].outlet) return 0;
+        inlets++;
+    }
+    return inlets ? (double)s->particles.count*s->smoothing.volume/measure_domain(s) : 0;
+}
+
+/* How much more liquid than the whole domain holds is no rounding of a lattice. */
+static const double OVERFULL = 1.05;
+
+/* Liquid that inlets press into a domain without room and without an outlet has no pressure that is right:
+   methods crowd it, and then it is thrown about. */
+tobi_status tobi_openings_check_room(const tobi_world *w, tobi_error *err)
+{
+    const double fill = tobi_openings_share(&w->system[0]), room = measure_domain(&w->system[0]);
+    const char *unit = w->system[0].box.dimension == 2 ? "m2" : "m3";
+    if (fill < OVERFULL) return TOBI_OK;
+    return tobi_fail(err, TOBI_DIVERGED, "the inlets have overfilled the domain at t = %.9g s: %.4g %s of "
+                     "liquid, the domain has %.4g %s; stop the inlets before, add an outlet, or make the "
+                     "domain larger", w->sim.time, fill*room, unit, room, unit);
+}
+
+/* Share of the domain from which liquid leaves no room for a free surface, but in the buffers. */
+static const double FULL = 0.8;
+
+/* The name of an outlet without a pressure, or NULL. */
+static const char *find_free_outlet(const tobi_simulation *s)
+{
+    for (int k = 0; k < s->opening_count; k++)
+        if (s->openings[k].outlet && s->openings[k].gives == TOBI_GIVES_NOTHING) return s->openings[k].name;
+    return NULL;
+}
+
+tobi_status tobi_openings_note(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    const char *outlet = find_free_outlet(&w->sim);
+    char text[300];
+    if (w->sim.opening_count == 0 || (s->method->fills_pipes && !outlet)) return TOBI_OK;
+    if ((double)s->particles.count*s->smoothing.volume < FULL*measure_domain(s)) return TOBI_OK;
+    if (s->method->fills_pipes)
+        snprintf(text, sizeof text, "where the pressure falls below 0 a full pipe gets cavities (mass_held "
+                 "in history.csv falls); a pressure of the outlet '%s', density x speed^2 of the fastest "
+                 "place, keeps it full\n", outlet);
+    else
+        snprintf(text, sizeof text, "%s crowds or loses liquid where inlets and outlets leave no free "
+                 "surface, as in a full pipe; isph keeps it\n", s->method->name);
+    return tobi_world_add_notes(w, "world", "method", text, err);
+}
