@@ -191,13 +191,19 @@ static void close_viewer(viewer *v)
     if (v->screen) screen_close(v->screen);
 }
 
+/* A run that Ctrl-C or SIGTERM stopped takes its window with it. */
+static int is_stopped(const viewer *v)
+{
+    return v->def.live && is_interrupted() && live_has_ended(v->def.live);
+}
+
 int window_show(const window_def *def)
 {
     viewer v = { .def = *def, .factor = 4, .dirty = 1, .changed = 1, .keys = def->keys, .graph_number = 0,
                  .picks = { -1, -1 }, .look = { .clip_axis = -1 } };
     const int code = open_viewer(&v);
     if (code == 0) viewer_note(&v, "h: keys");
-    while (code == 0 && !v.ends) turn(&v);
+    while (code == 0 && !v.ends && !is_stopped(&v)) turn(&v);
     close_viewer(&v);
     return code;
 }

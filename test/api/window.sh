@@ -174,6 +174,15 @@ check "a run that its window stops: exit code 130 (was $got)" test $got = 130
 for k in 1 2; do mv left/window_$k.png left_$k.png; done
 differ head left_1.png left_2.png "a step of a run"
 check "a run that was stopped can go on" grep -q '"interrupted"' left/summary.json
+"$program" run drop.json --out paused --quiet --window --set end_time=1000 --keys " s" 2> err.txt &
+runner=$!
+for _ in $(seq 300); do [ -s paused/window_1.png ] && break; sleep 0.1; done
+kill -TERM $runner
+for _ in $(seq 100); do kill -0 $runner 2> /dev/null || break; sleep 0.1; done
+check "a signal ends a paused run and its window" bash -c "! kill -0 $runner 2> /dev/null"
+kill -KILL $runner 2> /dev/null
+wait $runner 2> /dev/null
+check "with a checkpoint" grep -q '"interrupted"' paused/summary.json
 expect 0 "" run drop.json --out on --quiet --window --until 0.15 --keys " nqg"
 check "a run goes on without its window" grep -q '"complete"' on/summary.json
 $python compare.py > verdicts.txt
