@@ -16,7 +16,8 @@
    the others. A world that was destroyed must not be used; dev builds stop at an assert.
 
    Names: a fluid, solid or body has a name that no other of the three has, and so have probes, lines and
-   joints, each among themselves: TOBI_INVALID. The default names serve for one of each.
+   joints, each among themselves: TOBI_INVALID. The default names serve for one of each. They stand in
+   tables: commas, quotes and control characters are TOBI_INVALID.
 
    Threads: different worlds may be used from different threads, one world from one thread at a time. After a
    fork the child must not use worlds of its parent, whose threads it has not; exec is fine.

@@ -45,9 +45,14 @@ static tobi_status check_text(const tobi_param_table *table, const tobi_param *p
     const char *text;
     memcpy(&text, at, sizeof text);
     const size_t bytes = text && strcmp(p->unit, "name") == 0 ? strlen(text) : 0;
-    if (bytes <= TOBI_NAME_BYTES) return TOBI_OK;
-    return tobi_fail(err, TOBI_INVALID, "%s.%s has %zu bytes, allowed are up to %d", table->name, p->key,
-                     bytes, TOBI_NAME_BYTES);
+    if (bytes > TOBI_NAME_BYTES)
+        return tobi_fail(err, TOBI_INVALID, "%s.%s has %zu bytes, allowed are up to %d", table->name, p->key,
+                         bytes, TOBI_NAME_BYTES);
+    for (size_t k = 0; k < bytes; k++)              /* it becomes a cell of a table */
+        if ((unsigned char)text[k] < ' ' || text[k] == 127 || strchr(",\"", text[k]))
+            return tobi_fail(err, TOBI_INVALID, "%s.%s has a comma, a quote or no letter at byte %zu",
+                             table->name, p->key, k);
+    return TOBI_OK;
 }
 
 tobi_status tobi_param_check(const tobi_param_table *table, const void *def, tobi_error *err)

@@ -11,7 +11,7 @@ void tobi_param_defaults(const tobi_param_table *table, void *def);
 double tobi_param_word(const tobi_param *p);
 /* A world keeps so many of a name. */
 enum { TOBI_NAME_BYTES = 63 };
-/* Checks the ranges of every row, and how long names are; the first violation is described in err. */
+/* Checks the ranges of every row, and names; the first violation is described in err. */
 tobi_status tobi_param_check(const tobi_param_table *table, const void *def, tobi_error *err);
 
 /* The number of words in "a|b|c", and word i of it (not terminated), its length in *length;

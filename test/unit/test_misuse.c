@@ -417,7 +417,16 @@ static void names_that_are_none(void **state)
     REFUSED(tobi_world_add_joint(w, &joint, &err), TOBI_INVALID, long_name);
     REFUSED(tobi_world_add_inlet(w, &inlet, &err), TOBI_INVALID, long_name);
     REFUSED(tobi_world_add_outlet(w, &outlet, &err), TOBI_INVALID, long_name);
+    static const char *const odd[] = { "a,b", "a\nb", "a\"b", "a\177b" };       /* no cells of a table */
+    for (size_t k = 0; k < sizeof odd/sizeof *odd; k++) {
+        fluid.name = body.name = probe.name = odd[k];
+        REFUSED(tobi_world_add_fluid(w, &fluid, NULL, 0, &err), TOBI_INVALID,
+                "fluid.name has a comma, a quote or no letter at byte 1");
+        REFUSED(tobi_world_add_body(w, &body, &err), TOBI_INVALID, "body.name has a comma");
+        REFUSED(tobi_world_add_probe(w, &probe, &err), TOBI_INVALID, "probe.name has a comma");
+    }
     name[63] = '\0';
+    probe.name = name;
     OK(tobi_world_add_probe(w, &probe, &err));
     assert_string_equal(tobi_world_probe_name(w, 0, NULL), name);
     body.name = joint.to_body = line.to_body = "box";
