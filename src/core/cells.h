@@ -18,6 +18,8 @@ typedef struct tobi_box {
     double centre[3];       /* m from the lower corner: fixed-point zero              */
 } tobi_box;
 
+/* A box from lower to upper, m; in 2-D it is h thick. periodic: 1 of axes whose sides are one. h: support
+   radius, m. */
 void tobi_box_init(tobi_box *b, int dimension, const double lower[3], const double upper[3],
                    const int periodic[3], double h);
 

@@ -45,6 +45,7 @@ void tobi_mesh_free(tobi_mesh *mesh);
 tobi_status tobi_mesh_transform(tobi_mesh *mesh, const double scale[3], const double axis[3],
                                 double degrees, const double translation[3], tobi_error *err);
 
+/* Its extent, m. */
 void tobi_mesh_box(const tobi_mesh *mesh, double min[3], double max[3]);
 
 /* Makes a surface as CAD writes it a closed one, oriented outwards, and says in mesh->notes what it

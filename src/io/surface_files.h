@@ -3,6 +3,7 @@
 #include "io/vtk.h"
 #include "tobiuo/surface.h"
 
+/* As VTP, with all its fields, whole or not at all; errors are those of tobi_vtp_write. */
 tobi_status tobi_surface_write_vtp(const char *path, tobi_compression compression,
                                    const tobi_surface *surface,
                                    tobi_error *err);

@@ -35,6 +35,8 @@ typedef struct tobi_vtk_surface {
     int cell_array_count;
 } tobi_vtk_surface;
 
+/* Writes a surface as VTP, whole or not at all. TOBI_INVALID for arrays that no file could hold, TOBI_IO,
+   TOBI_NO_MEMORY. */
 tobi_status tobi_vtp_write(const char *path, tobi_compression compression, const tobi_vtk_surface *surface,
                            tobi_error *err);
 

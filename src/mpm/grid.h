@@ -23,6 +23,7 @@ typedef struct mpm_grid {
     int layers;                        /* of node arrays: 1 APIC, 2 FLIP, 3 XPIC                  */
 } mpm_grid;
 
+/* An empty grid; blocks come with the particles. TOBI_NO_MEMORY. */
 tobi_status mpm_grid_create(mpm_grid *g, int dimension, int layers, const tobi_exec *x, tobi_error *err);
 void mpm_grid_free(mpm_grid *g);
 int64_t mpm_grid_bytes(const mpm_grid *g);

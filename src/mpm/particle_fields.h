@@ -19,6 +19,7 @@ extern const tobi_field_list mpm_field_list;
 static inline mpm_fields *mpm_fields_of(const tobi_particles *p) { return p->own; }
 
 extern const tobi_output mpm_outputs[];
+/* method->needs. */
 unsigned mpm_needs(const tobi_system *s, int full);
 /* Verbs of tobi_method. */
 void mpm_place(tobi_system *s, int64_t i, const tobi_start *start);

@@ -12,6 +12,7 @@ enum { MPM_MIXED = -1 };
    their base nodes, cells from the domain's lower corner. */
 typedef struct mpm_extent { int group, low[3], high[3]; } mpm_extent;
 
+/* The extent of one block. */
 mpm_extent mpm_solid_contact_look(const mpm_view *v, const mpm_block *b, int dimension);
 /* Finds the nodes of a patch where two groups meet. extent: of each block. side, cut face: of the patch's
    nodes; those with a side already keep it. Returns 1 if there are any. */

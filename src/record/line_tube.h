@@ -9,4 +9,5 @@ typedef struct tobi_line_tube {
     int32_t triangle[TOBI_TUBE_TRIANGLES][3];
 } tobi_line_tube;
 
+/* The tube around a line as it hangs now; radius in m. */
 void tobi_line_draw(const tobi_line *line, double radius, tobi_line_tube *tube);

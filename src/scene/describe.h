@@ -7,8 +7,8 @@
 const tobi_param_table *tobi_describe_table_at(int index);
 /* Every topic. NULL past the end. */
 const char *tobi_describe_topic(int index);
+/* Prints a key with unit, range, default and sentence; and a key whose value is an object or a list. */
 void tobi_describe_row(FILE *out, const tobi_param *row);
-
 void tobi_describe_part(FILE *out, const tobi_part *part);
 /* Keys, fields and columns whose path has the words; how many. */
 int tobi_describe_find(FILE *out, const char *word);

@@ -23,9 +23,11 @@ typedef struct isph {
     int sides_due;                   /* 1: the info has no pressure on the sides of the domain yet  */
 } isph;
 
+/* The state of a system, by isph's parameters: those of eisph are a part of them. TOBI_NO_MEMORY. */
 tobi_status isph_create_state(tobi_system *s, const tobi_isph_def *def, tobi_error *err);
 /* dt <= min(cfl d/|v|, 0.25 sqrt(d/g), viscous limit, that of surface tension). */
 double isph_choose_dt(tobi_system *s);
+/* Of a tobi_method, as ISPH_VERBS names them. */
 int isph_list_memory(tobi_system *s, double **values);
 tobi_status isph_remember(tobi_system *s, tobi_error *err);
 void isph_take_back(tobi_system *s);
@@ -41,7 +43,6 @@ void isph_read(const tobi_system *s, const char *field, int64_t i, double *out);
 int64_t isph_count_bytes(const tobi_system *s);
 void isph_free_state(void *state);
 
-/* Of a tobi_method. */
 #define ISPH_VERBS                                                                                  \
     .fields = &sph_field_list, .outputs = isph_outputs, .needs = sph_needs, .remember = isph_remember,   \
     .take_back = isph_take_back, .forces = isph_forces, .solve = isph_solve, .move = isph_move,     \

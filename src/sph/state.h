@@ -33,6 +33,7 @@ static inline sph_state *sph_of(const tobi_system *s) { return s->state; }
                  e = tobi_boundary_next(&sph_of(s)->links, e))
 
 extern const tobi_output sph_outputs[];
+/* method->needs. */
 unsigned sph_needs(const tobi_system *s, int full);
 /* Pressure, density and sph_outputs of one particle. */
 void sph_read(const tobi_system *s, const char *name, int64_t i, double *out);

@@ -132,6 +132,7 @@ tobi_status tobi_world_step_towards(tobi_world *w, double t, double end, tobi_er
 /* Brings derived fields and the id order up to date. */
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);
 
+/* Frees what was read of the grid of mlsmpm. */
 void tobi_world_free_grid(tobi_world *w);
 
 /* textures.c: whether a mesh with texture coordinates fills a solid; finds those of all particles, once. */
