@@ -86,7 +86,14 @@ static char *find_beside(const char *path, const char *mark)
     return found;
 }
 
-char *near_run(const char *path) { return find_beside(path, run_mark); }
+char *near_run(const char *path)
+{
+    char *found = find_beside(path, run_mark);
+    const size_t n = found ? strlen(found) : 0;
+    if (!found || strncmp(found, path, n) != 0 || path[n + strspn(path + n, "/")]) return found;
+    free(found);                /* the path itself: a run, of which something else is missing */
+    return NULL;
+}
 
 char *near_scene(const char *path)
 {

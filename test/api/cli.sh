@@ -284,6 +284,12 @@ rm -rf full full.json streams
 
 expect 1 "out/tnak: there is no run to resume (no resolved.json); did you mean out/tank?" resume out/tnak
 expect 1 "out/tnak: there is no run to draw (no history.csv); did you mean out/tank?" plot out/tnak
+mkdir begun && cp out/tank/resolved.json begun
+for path in begun ./begun begun//; do
+    expect 1 "there is no run to draw (no history.csv)" plot $path
+    check "$path is not told to mean itself" test "$(grep -c 'did you mean' err.txt)" = 0
+done
+rm -r begun
 
 expect 1 "output.surface: is true or false, must be an object { ... } with write, cell, smoothing, fields" \
     check tank.json --set output.surface=true
