@@ -273,6 +273,13 @@ double tobi_motion_wave_depth(const tobi_motion *motion)
     return depth;
 }
 
+int tobi_motion_is_plain(const tobi_motion *motion)
+{
+    int plain = motion->kind != KIND_SCRIPT;
+    for (int k = 0; k < motion->parts; k++) plain &= tobi_motion_is_plain(motion->part[k]);
+    return plain;
+}
+
 const tobi_waves *tobi_motion_absorber(const tobi_motion *motion, double direction[3])
 {
     const tobi_waves *found = NULL;

@@ -32,6 +32,8 @@ const tobi_waves *tobi_motion_absorber(const tobi_motion *motion, double directi
 
 /* m: the depth that a piston or flap, or one among the parts of the motion, is made for; 0: there is none. */
 double tobi_motion_wave_depth(const tobi_motion *motion);
+/* 1: no part of the motion is a script, so that it may be asked for any time in any order. */
+int tobi_motion_is_plain(const tobi_motion *motion);
 
 /* 1/m: k of omega^2 = g k tanh kh for a period (s) and a depth (m). */
 double tobi_waves_number(double gravity, double depth, double period);

@@ -1,12 +1,13 @@
-/* Wave makers: the stroke must fit into the tank, and the method should keep the waves. Drawback: the stroke
-   is looked for at times, so that one that is out for a moment between them is missed. */
+/* Strokes: that of a wave maker must fit into the tank, another one is noted where it does not; and the
+   method should keep the waves. Drawback: strokes are looked for at times, so that one that is out for a
+   moment between them is missed. */
 #include "rigid/waves.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { TIMES = 2000 };
+enum { TIMES = 2000, SOME_TIMES = 200 };
 /* Share of the liquid's height; the lattice fits to less. */
 static const double OTHER_DEPTH = 0.05;
 
@@ -21,10 +22,12 @@ static tobi_status check_place(const tobi_world *w, const tobi_body *b, const do
                                tobi_error *err)
 {
     const tobi_box *box = &w->system[0].box;
+    const double slack = 1e-9*w->sim.def.spacing;
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         for (int a = 0; a < box->dimension; a++) {
             const double lower = box->lower[a], upper = box->lower[a] + box->size[a];
-            if (box->periodic[a] || is_upright(w, a) || (at[i][a] >= lower && at[i][a] <= upper)) continue;
+            if (box->periodic[a] || is_upright(w, a)) continue;
+            if (at[i][a] >= lower - slack && at[i][a] <= upper + slack) continue;
             return tobi_fail(err, TOBI_INVALID, "the stroke of '%s' is beyond the tank: at t = %.4g s a "
                              "vertex is at %c = %.4g m, allowed is %g to %g m", b->name, t, "xyz"[a],
                              at[i][a], lower, upper);
@@ -38,20 +41,24 @@ static double wave_depth(const tobi_body *b)
     return b->motion == tobi_motion_positions ? tobi_motion_wave_depth(b->motion_user) : 0;
 }
 
-tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tobi_error *err)
+static tobi_status check_stroke(const tobi_world *w, const tobi_body *b, int times, tobi_error *err)
 {
     const int64_t n = b->mesh.vertex_count;
-    if (!(wave_depth(b) > 0)) return TOBI_OK;
     double (*at)[3] = malloc((size_t)(n + 1)*sizeof *at);
     if (!at) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the vertices of '%s'", b->name);
     tobi_status status = TOBI_OK;
-    for (int k = 0; k <= TIMES && status == TOBI_OK; k++) {
-        const double t = w->sim.def.end_time*k/TIMES;
+    for (int k = 0; k <= times && status == TOBI_OK; k++) {
+        const double t = w->sim.def.end_time*k/times;
         status = b->motion(b->motion_user, t, n, (const double (*)[3])b->mesh.vertices, at, err);
         if (status == TOBI_OK) status = check_place(w, b, (const double (*)[3])at, t, err);
     }
     free(at);
     return status;
+}
+
+tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tobi_error *err)
+{
+    return wave_depth(b) > 0 ? check_stroke(w, b, TIMES, err) : TOBI_OK;
 }
 
 /* The figures are of test/physics/wave_maker. */
@@ -62,6 +69,19 @@ static tobi_status note_method(tobi_world *w, const tobi_body *b, tobi_error *er
     if (!m->damps_waves) return TOBI_OK;
     snprintf(text, sizeof text, "by %s its waves come out too low: on 10 layers of particles by up to a "
              "quarter, and they get lower on their way; isph keeps them\n", m->name);
+    return tobi_world_add_notes(w, "body", b->name, text, err);
+}
+
+/* A recorded stroke, or a body that is drawn through a side of the tank, which liquid does not pass. */
+static tobi_status note_stroke(tobi_world *w, const tobi_body *b, tobi_error *err)
+{
+    tobi_error why = { 0 };
+    char text[sizeof why.text + 2];
+    if (b->motion != tobi_motion_positions || !tobi_motion_is_plain(b->motion_user)) return TOBI_OK;
+    if (wave_depth(b) > 0 || b->absent[0] > 0) return TOBI_OK;
+    const tobi_status status = check_stroke(w, b, SOME_TIMES, &why);
+    if (status == TOBI_OK || status == TOBI_NO_MEMORY) return status;
+    snprintf(text, sizeof text, "%s\n", why.text);
     return tobi_world_add_notes(w, "body", b->name, text, err);
 }
 
@@ -80,7 +100,9 @@ static tobi_status note_depth(tobi_world *w, const tobi_body *b, tobi_error *err
 
 tobi_status tobi_world_note_makers(tobi_world *w, tobi_error *err)
 {
+    if (w->system[0].method->solids) return TOBI_OK;
     for (int k = 0; k < w->sim.body_count; k++) {
+        TOBI_TRY(note_stroke(w, &w->sim.bodies[k], err));
         if (!(wave_depth(&w->sim.bodies[k]) > 0)) continue;
         TOBI_TRY(note_method(w, &w->sim.bodies[k], err));
         TOBI_TRY(note_depth(w, &w->sim.bodies[k], err));

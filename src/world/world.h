@@ -79,7 +79,8 @@ int tobi_world_first_material(const tobi_world *w, const tobi_system *s);
 
 /* Refuses a wave maker whose stroke takes it out of the domain before the end time. */
 tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tobi_error *err);
-/* Adds a note for each wave maker in a liquid whose method damps waves. */
+/* Adds a note for each wave maker in a liquid whose method damps waves or whose depth is another, and for
+   each other body that a motion without a script takes through a side. */
 tobi_status tobi_world_note_makers(tobi_world *w, tobi_error *err);
 /* Adds a note for each probe of a point that begins deep in a body. */
 tobi_status tobi_world_note_probes(tobi_world *w, tobi_error *err);

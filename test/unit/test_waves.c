@@ -214,6 +214,49 @@ static void strokes_fit_into_the_tank(void **state)
     tobi_motion_free(m);
 }
 
+/* Another body that moves through a side, as a recorded stroke may, is told; one that is drawn up is not. */
+static void other_strokes_are_noted(void **state)
+{
+    static const double ways[][3] = { { -0.2, 0, 0 }, { -0.02, 0, 0 }, { 0, 2, 0 } };
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        tobi_world_def w = tobi_default_world_def();
+        tobi_body_def b = tobi_default_body_def();
+        tobi_fluid_def water = tobi_default_fluid_def();
+        tobi_fill_def fill = tobi_default_fill_def();
+        tobi_world *world;
+        tobi_motion *m;
+        int told = 0;
+        w.dimension = 2;
+        w.domain_max[0] = w.domain_max[1] = 1;
+        w.gravity[1] = -9.81;
+        w.gravity[2] = 0;
+        w.spacing = 0.05;
+        w.end_time = 1;
+        OK(tobi_motion_translation(ways[k], &m, &err));
+        OK(tobi_world_create(&w, NULL, &world, &err));
+        fill.box_min[0] = 0.5;
+        fill.box_max[0] = 1;
+        fill.box_max[1] = 0.5;
+        OK(tobi_world_add_fluid(world, &water, &fill, 1, &err));
+        b.name = "piston";
+        b.box_min[0] = 0.1;
+        b.box_max[0] = 0.5;
+        b.box_max[1] = 0.9;
+        b.motion = tobi_motion_positions;
+        b.motion_user = m;
+        b.motion_rigid = 1;
+        OK(tobi_world_add_body(world, &b, &err));
+        OK(tobi_world_start(world, &err));
+        for (int n = 0; tobi_world_note(world, n); n++)
+            told += !!strstr(tobi_world_note(world, n), "the stroke of 'piston' is beyond the tank: "
+                              "at t = 0.505");
+        assert_int_equal(told, k == 0);
+        tobi_world_destroy(world);
+        tobi_motion_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -224,6 +267,7 @@ int main(void)
         cmocka_unit_test(irregular_waves_have_their_height),
         cmocka_unit_test(flaps_turn_about_their_hinge),
         cmocka_unit_test(strokes_fit_into_the_tank),
+        cmocka_unit_test(other_strokes_are_noted),
         cmocka_unit_test(what_cannot_be_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
