@@ -30,12 +30,13 @@ double tobi_param_word(const tobi_param *p) { return p->def[0] < p->min ? p->def
 static tobi_status check_value(const tobi_param_table *table, const tobi_param *p, double v,
                                tobi_error *err)
 {
+    const char *unit = p->type == TOBI_PARAM_CHOICE || strcmp(p->unit, "1") == 0 ? "" : p->unit;
     if (!isfinite(v))
         return tobi_fail(err, TOBI_INVALID, "%s.%s is not a finite number", table->name, p->key);
     if (p->text && v == tobi_param_word(p)) return TOBI_OK;
     if (v < p->min || v > p->max)
-        return tobi_fail(err, TOBI_INVALID, "%s.%s is %g, allowed is %g to %g %s", table->name, p->key, v,
-                         p->min, p->max, p->unit);
+        return tobi_fail(err, TOBI_INVALID, "%s.%s is %g, allowed is %g to %g%s%s", table->name, p->key, v,
+                         p->min, p->max, *unit ? " " : "", unit);
     return TOBI_OK;
 }
 

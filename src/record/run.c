@@ -140,21 +140,15 @@ static tobi_status create(tobi_run *run, int force, const char *resolved, tobi_e
     return begin(run, err);
 }
 
-static tobi_status check_arguments(const tobi_world *world, const tobi_output_def *output, const char *dir,
-                                   tobi_error *err)
-{
-    TOBI_NEED_WORLD(world);
-    TOBI_NEED(output, "the output");
-    TOBI_NEED(dir, "the directory");
-    return tobi_param_check(&tobi_output_table, output, err);
-}
-
 tobi_status tobi_run_create(tobi_world *world, const tobi_output_def *output, const char *dir,
                             int force, const char *resolved_json, tobi_run **out, tobi_error *err)
 {
     TOBI_NEED(out, "where the run goes");
     *out = NULL;
-    TOBI_TRY(check_arguments(world, output, dir, err));
+    TOBI_NEED_WORLD(world);
+    TOBI_NEED(output, "the output");
+    TOBI_NEED(dir, "the directory");
+    TOBI_TRY(tobi_param_check(&tobi_output_table, output, err));
     tobi_run *run = NULL;
     tobi_status status = open_run(world, output, dir, &run, err);
     if (status == TOBI_OK) status = create(run, force, resolved_json, err);
@@ -191,7 +185,10 @@ tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, co
 {
     TOBI_NEED(out, "where the run goes");
     *out = NULL;
-    TOBI_TRY(check_arguments(world, output, dir, err));
+    TOBI_NEED_WORLD(world);
+    TOBI_NEED(output, "the output");
+    TOBI_NEED(dir, "the directory");
+    TOBI_TRY(tobi_param_check(&tobi_output_table, output, err));
     bool found = false;
     TOBI_TRY(tobi_record_find_results(dir, &found, err));
     if (!found)

@@ -51,7 +51,6 @@ double tobi_kernel_slope(int kernel, int dimension, double support, double r)
 /* The system of the fluid, with cells and lists of the present positions. */
 static tobi_status find_system(tobi_world *w, tobi_system **s, tobi_error *err)
 {
-    TOBI_NEED_WORLD(w);
     *s = tobi_world_fluids(w);
     if (!*s)
         return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no neighbour search; methods for fluids have one",
@@ -77,6 +76,7 @@ tobi_status tobi_world_search(tobi_world *w, tobi_search *search, tobi_error *er
 {
     tobi_system *s = NULL;
     TOBI_NEED(search, "where the search goes");
+    TOBI_NEED_WORLD(w);
     TOBI_TRY(find_system(w, &s, err));
     describe_search(s, search);
     return TOBI_OK;
@@ -115,6 +115,7 @@ tobi_status tobi_world_cells(tobi_world *w, int64_t *cell, int64_t count, tobi_e
     tobi_system *s = NULL;
     int64_t *of_row;
     TOBI_NEED(cell || count == 0, "where the cells go");
+    TOBI_NEED_WORLD(w);
     TOBI_TRY(find_system(w, &s, err));
     if (count < s->particles.count)
         return tobi_fail(err, TOBI_INVALID, "there are cells of %lld particles, room for %lld given",
@@ -159,6 +160,7 @@ tobi_status tobi_world_neighbours(tobi_world *w, int64_t id, int64_t *ids, int64
     int64_t row;
     TOBI_NEED(count, "where the number of neighbours goes");
     TOBI_NEED(ids || room <= 0, "where the neighbours go");
+    TOBI_NEED_WORLD(w);
     TOBI_TRY(find_system(w, &s, err));
     TOBI_TRY(find_row(s, id, &row, err));
     int64_t *all = list_neighbours(s, row, count);
@@ -333,6 +335,7 @@ tobi_status tobi_world_write_search(tobi_world *w, int64_t id, const char *dir, 
     tobi_system *s = NULL;
     points p = { 0 };
     TOBI_NEED(dir, "the directory");
+    TOBI_NEED_WORLD(w);
     TOBI_TRY(find_system(w, &s, err));
     look k = { .s = s, .dir = dir };
     describe_search(s, &k.search);

@@ -272,12 +272,9 @@ static void read_system(const tobi_world *w, tobi_system *s, const tobi_output *
 }
 
 /* Finds a field by its name and checks that there is room for it. Then the rows are in order. */
-static tobi_status find_field(tobi_world *w, tobi_set set, const char *field, const void *buffer,
-                              int64_t count, const tobi_output **found, tobi_error *err)
+static tobi_status find_field(tobi_world *w, tobi_set set, const char *field, int64_t count,
+                              const tobi_output **found, tobi_error *err)
 {
-    TOBI_NEED_WORLD(w);
-    TOBI_NEED(field, "the field");
-    TOBI_NEED(buffer || count == 0, "the buffer");
     if (set != TOBI_FLUID && set != TOBI_BODIES)
         return tobi_fail(err, TOBI_INVALID, "there is no set of particles %d; allowed are TOBI_FLUID and "
                          "TOBI_BODIES", (int)set);
@@ -301,7 +298,9 @@ static tobi_status find_field(tobi_world *w, tobi_set set, const char *field, co
 tobi_status tobi_world_read_ids(tobi_world *w, tobi_set set, int64_t *buffer, int64_t count, tobi_error *err)
 {
     const tobi_output *unused;
-    TOBI_TRY(find_field(w, set, "id", buffer, count, &unused, err));
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(buffer || count == 0, "the buffer");
+    TOBI_TRY(find_field(w, set, "id", count, &unused, err));
     const int64_t bodies = set == TOBI_BODIES ? tobi_world_count(w, set) : 0;
     for (int k = 0; k < w->system_count && set == TOBI_FLUID; k++) {
         const tobi_system *s = &w->system[k];
@@ -316,7 +315,10 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *name, doubl
                             tobi_error *err)
 {
     const tobi_output *found;
-    TOBI_TRY(find_field(w, set, name, buffer, count, &found, err));
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(name, "the field");
+    TOBI_NEED(buffer || count == 0, "the buffer");
+    TOBI_TRY(find_field(w, set, name, count, &found, err));
     const char *field = found->name;
     const int components = found->components;
     if (set == TOBI_BODIES) return read_bodies(w, field, components, buffer, err);

@@ -132,7 +132,8 @@ static void nothing_where_something_must_stand(void **state)
     REFUSED(tobi_world_add_probe(w, &nameless, &err), TOBI_INVALID, "the name of the probe is NULL");
     REFUSED(tobi_world_probe(w, 0, NULL, &err), TOBI_INVALID, "where the values go is NULL");
     REFUSED(tobi_world_estimate(w, NULL, NULL, NULL, &err), TOBI_INVALID, "where a number goes is NULL");
-    REFUSED(tobi_world_read(w, TOBI_FLUID, NULL, &v, 1, &err), TOBI_INVALID, "the field is NULL");
+    REFUSED(tobi_world_read(w, TOBI_FLUID, NULL, &v, 1, &err), TOBI_INVALID,
+            "tobi_world_read: the field is NULL");
     REFUSED(tobi_world_read(w, TOBI_FLUID, "pressure", NULL, 64, &err), TOBI_INVALID, "the buffer is NULL");
     REFUSED(tobi_world_read(w, (tobi_set)7, "pressure", &v, 1, &err), TOBI_INVALID,
             "there is no set of particles 7");
@@ -318,7 +319,8 @@ static void runs(void **state)
     tobi_output_def out = tobi_default_output_def();
     tobi_run *run = NULL;
     REFUSED(tobi_run_create(NULL, &out, "misuse", 1, NULL, &run, &err), TOBI_INVALID, NULL_WORLD);
-    REFUSED(tobi_run_create(w, NULL, "misuse", 1, NULL, &run, &err), TOBI_INVALID, "the output is NULL");
+    REFUSED(tobi_run_create(w, NULL, "misuse", 1, NULL, &run, &err), TOBI_INVALID,
+            "tobi_run_create: the output is NULL");
     REFUSED(tobi_run_create(w, &out, NULL, 1, NULL, &run, &err), TOBI_INVALID, "the directory is NULL");
     REFUSED(tobi_run_create(w, &out, "misuse", 1, NULL, NULL, &err), TOBI_INVALID,
             "where the run goes is NULL");

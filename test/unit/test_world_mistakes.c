@@ -61,10 +61,19 @@ static void worlds(void **state)
 {
     (void)state;
     tobi_world *world;
+    tobi_error err;
     tobi_world_def def = make_def();
     def.domain_max[1] = def.domain_min[1];
     REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID,
             "domain.max[1]: is 0 in y, must be greater than domain.min there, 0");
+    def = make_def();
+    def.dimension = 4;                  /* what has no unit ends the sentence */
+    assert_int_equal(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID);
+    assert_string_equal(err.text, "world.dimension is 4, allowed is 2 to 3");
+    def = make_def();
+    def.wall_min[0] = 99;
+    assert_int_equal(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID);
+    assert_string_equal(err.text, "world.domain.walls.x[0] is 99, allowed is 0 to 4");
     def = make_def();
     def.wall_min[2] = TOBI_WALL_PERIODIC;
     REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID,
