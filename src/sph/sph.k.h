@@ -262,7 +262,7 @@ TOBI_FN float sph_plane_friction(const sph_view *v, int plane, float s, float si
    -lambda g, eq. (6), (6b). */
 TOBI_FN void sph_kick_by(const sph_view *v, int64_t i, const float filter[3])
 {
-    static const tobi_float4 none;
+    const tobi_float4 none = {0, 0, 0, 0};
     float nu = v->implicit ? 0 : v->kinematic[v->fluid[i]];
     tobi_float4 u = v->velocity[i], l = nu > 0 ? v->accel[i] : none;
     float speed[3] = {u.x, u.y, u.z}, wet = sph_wetness(v, i);
@@ -310,7 +310,7 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
 /* The same without a filter; without viscosity accel may be anything. */
 TOBI_FN void sph_kick_unfiltered(const sph_view *v, int64_t i, double *totals)
 {
-    static const float filter[3];
+    const float filter[3] = {0, 0, 0};
     (void)totals;
     sph_kick_by(v, i, filter);
 }
