@@ -54,7 +54,7 @@ typedef struct tobi_world_def {
     double      gravity[3];      /* m/s2                                                             */
     double      spacing;         /* m, particle spacing d of the fluid                               */
     double      end_time;        /* s                                                                */
-    double      time_step;       /* s, fixed step; 0 = adaptive                                      */
+    double      time_step;       /* s, fixed, but for the last eight before an output; 0 = adaptive  */
     double      time_step_max;   /* s, cap of the adaptive step; 0 = none                            */
     double      cfl;             /* 1, dt <= cfl d / |v|max                                          */
     double      contact_angle;   /* degrees, in the liquid, at the sides of the box                  */

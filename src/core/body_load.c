@@ -6,6 +6,12 @@
 
 void tobi_body_clear_loads(tobi_body *b) { memset(b->load, 0, sizeof b->load); }
 
+/* What is rounding alone in 2-D: the force along z and the torques about x and y. */
+static void flatten(double load[6])
+{
+    for (int a = 2; a < 5; a++) load[a] = 0;
+}
+
 void tobi_body_sum_loads(tobi_body *b)
 {
     tobi_body_load sum = b->load[0];
@@ -15,6 +21,10 @@ void tobi_body_sum_loads(tobi_body *b)
             sum.friction[a] += b->load[k].friction[a];
         }
         vec3_add_scaled(sum.edge, sum.edge, 1, b->load[k].edge);
+    }
+    if (b->surface.dimension == 2) {
+        flatten(sum.pressure);
+        flatten(sum.friction);
     }
     memcpy(b->info.pressure_force, sum.pressure, sizeof b->info.pressure_force);
     memcpy(b->info.pressure_torque, sum.pressure + 3, sizeof b->info.pressure_torque);

@@ -44,8 +44,11 @@ tobi_status tobi_simulation_check_stop(tobi_simulation *s, tobi_error *err)
                      (long long)s->step);
 }
 
+/* Fewer steps to a time are equal. */
+static const double EQUAL_STEPS = 8;
+
 double tobi_simulation_fit_dt(double dt, double max_dt)
 {
-    int fits = dt >= max_dt*(1 - 1e-9);      /* a fixed step fits but for rounding */
-    return max_dt <= 0 || dt < 0.5*max_dt ? dt : fits ? max_dt : 0.5*max_dt;
+    const double steps = fmax(ceil(max_dt/dt*(1 - 1e-9)), 1);       /* a fixed step fits but for rounding */
+    return max_dt > 0 && steps <= EQUAL_STEPS ? max_dt/steps : dt;
 }

@@ -50,8 +50,8 @@ typedef struct tobi_simulation {
     int changed;                    /* 1: particles or bodies are not any more as the step found them */
 } tobi_simulation;
 
-/* The step to take where `dt` is stable and `max_dt` (0 = any) is left: not longer than both, and no crumb
-   remains. */
+/* The step to take where `dt` is stable and `max_dt` (0 = any) is left: the last eight steps to a time are
+   equal, so that what depends on the step before is right there (decision 111). */
 double tobi_simulation_fit_dt(double dt, double max_dt);
 
 /* The largest acceleration that liquid and bodies feel along an axis, and its size, m/s2. */

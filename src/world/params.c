@@ -57,7 +57,8 @@ static const tobi_param world_rows[] = {
       .doc = "Simulated time at which the run ends." },
     { .key = "time_step", REAL, AT(tobi_world_def, time_step), DURATION, .unit = "s",
       .text = "adaptive",
-      .doc = "A fixed time step; adaptive chooses each step from speeds, forces and viscosity." },
+      .doc = "A fixed time step, but that the last eight before an output fit it; adaptive chooses each "
+             "step from speeds, forces and viscosity." },
     { .key = "time_step_max", REAL, AT(tobi_world_def, time_step_max), DURATION, .unit = "s",
       .text = "none", .doc = "Longest step that the adaptive choice may take." },
     { .key = "cfl", REAL, AT(tobi_world_def, cfl), .def = { 0.4 },
