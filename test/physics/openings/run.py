@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Inlets and outlets: a channel against its parabola, a hose against its flow, a sluice gate."""
+import json
 import math
 import pathlib
 import sys
@@ -38,13 +39,14 @@ def check_balance(label, history):
 def flow_between_plates(method, across):
     """Profile and pressure between the openings, means over the last LATE seconds."""
     label = f"{method}, {across} across"
+    terms = ["viscous_acceleration", "pressure_acceleration"] if method == "isph" else []
     out = case.run(f"channel_{method}_{across}", "--set", f"method={method}", "--spacing", repr(H/across), "--until", UNTIL,
-                   may_fail=True)
+                   "--set", f"output.fields={json.dumps(['velocity', 'pressure', *terms])}", may_fail=True)
     case.figure(f"{label}: runs to its end", int(out is not None), "1", out is not None)
     if out is None:
         return
     history = read_table(out/"history.csv")
-    errors, slopes, end = [], [], history["time"][-1]
+    errors, slopes, balances, end = [], [], [], history["time"][-1]
     for time, path in read_series(out):
         if time < end - LATE - 0.01:
             continue
@@ -53,11 +55,16 @@ def flow_between_plates(method, across):
         middle = [i for i, x in enumerate(xs) if 0.3 < x < 0.7]
         errors.append(math.sqrt(mean([(us[i] - parabola(ys[i]))**2 for i in middle]))/(1.5*U))
         slopes.append(-fit_line([xs[i] for i in middle], [ps[i] for i in middle])[0])
+        balances.append([mean([data[term][3*i] for i in middle]) for term in terms])
     curves.append((f"{method}, {across} across", sorted(ys[i] for i in middle),
                    [u for _, u in sorted((ys[i], us[i]) for i in middle)], True))
     error, slope = mean(errors), mean(slopes)/(12*MU*U/H**2)
     case.figure(f"{label}: profile error, rms over the largest speed", error, "<= 0.03", error <= 0.03)
     case.figure(f"{label}: pressure gradient over Poiseuille's", slope, "0.9 to 1.1", 0.9 <= slope <= 1.1)
+    if terms:
+        friction, pressure = (mean(column) for column in zip(*balances))
+        case.figure(f"{label}: pressure over friction, of the same outputs", -pressure/friction, "1 within 0.02",
+                    abs(pressure/friction + 1) <= 0.02)
     check_balance(label, history)
 
 
