@@ -51,8 +51,8 @@ static tobi_status check_text(const tobi_param_table *table, const tobi_param *p
                          bytes, TOBI_NAME_BYTES);
     for (size_t k = 0; k < bytes; k++)              /* it becomes a cell of a table */
         if ((unsigned char)text[k] < ' ' || text[k] == 127 || strchr(",\"", text[k]))
-            return tobi_fail(err, TOBI_INVALID, "%s.%s has a comma, a quote or no letter at byte %zu",
-                             table->name, p->key, k);
+            return tobi_fail(err, TOBI_INVALID, "%s.%s has a comma, a quote or a control character at byte "
+                             "%zu", table->name, p->key, k);
     return TOBI_OK;
 }
 

@@ -423,7 +423,7 @@ static void names_that_are_none(void **state)
     for (size_t k = 0; k < sizeof odd/sizeof *odd; k++) {
         fluid.name = body.name = probe.name = odd[k];
         REFUSED(tobi_world_add_fluid(w, &fluid, NULL, 0, &err), TOBI_INVALID,
-                "fluid.name has a comma, a quote or no letter at byte 1");
+                "fluid.name has a comma, a quote or a control character at byte 1");
         REFUSED(tobi_world_add_body(w, &body, &err), TOBI_INVALID, "body.name has a comma");
         REFUSED(tobi_world_add_probe(w, &probe, &err), TOBI_INVALID, "probe.name has a comma");
     }
