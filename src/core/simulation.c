@@ -44,7 +44,7 @@ tobi_status tobi_simulation_check_stop(tobi_simulation *s, tobi_error *err)
                      (long long)s->step);
 }
 
-/* Fewer steps to a time are equal. */
+/* So many steps to a time, or fewer, are equal. */
 static const double EQUAL_STEPS = 8;
 
 double tobi_simulation_fit_dt(double dt, double max_dt)
