@@ -1,6 +1,6 @@
 # One object per instruction set.
 #
-# Files src/<room>/isa_*.c hold the loops that need wide vectors. On x86-64 each is compiled three
+# Files isa_*.c hold the loops that need wide vectors. On x86-64 each is compiled three
 # times, with TOBI_ISA = v2, v3 and v4 (the psABI levels: SSE4.2, AVX2, AVX-512); elsewhere once, as
 # v2 and without any machine flag. src/exec picks one set when the program starts. Everything else is
 # compiled for the plain architecture, so the program starts on any machine of that architecture.
@@ -17,7 +17,7 @@ endfunction()
 
 # Sets <out> to the objects of all isa_*.c files, for every set of this architecture.
 function(tobi_isa_objects out)
-    file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/*/isa_*.c")
+    file(GLOB_RECURSE files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/isa_*.c")
     set(flags_v2 "")
     set(sets v2)
     if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")

@@ -3,6 +3,8 @@
 
 usage: check_layers.py [ROOT]
 
+A folder inside a room belongs to it. That of a method is its own: of the room only lists of all methods read it.
+
 A header that a kernel (*.k.h) reads, itself or through others, is for devices too: it declares no function and
 no function pointer, and only src/exec includes headers of the system.
 """
@@ -23,6 +25,8 @@ RANK = {
 }
 # Rooms that read the world through include/tobiuo alone, and the rooms below that they stand on.
 ONLY = {"view": {"base", "exec"}, "scene": {"base", "geom"}}
+# Folders of one method, and the files of the room that list what all methods have.
+METHODS = {"sph/isph": ("isa_sph.c", "params.c")}
 PUBLIC = "tobiuo"            # include/tobiuo: allowed everywhere
 SUFFIXES = {".c", ".h", ".cu", ".def", ".inc"}
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
@@ -53,6 +57,10 @@ def check_room_file(root, path, errors):
         return
     for number, target in includes(path):
         other = target.split("/")[0] if "/" in target else room
+        folder = target.rpartition("/")[0]
+        if folder in METHODS and path.parent != root / "src" / folder and path.name not in METHODS[folder]:
+            errors.append(f"{where}:{number}: \"{target}\" is of one method; only {folder} and "
+                          f"{', '.join(METHODS[folder])} may include it")
         if other in (PUBLIC, room):
             continue
         if other not in RANK:

@@ -27,11 +27,11 @@ def has_case(root, name, is_default):
 
 def check(root, name, is_default):
     """Yields what the method lacks."""
-    sources = list(root.glob(f"src/*/{name}.c"))
+    sources = list((root / "src").rglob(f"{name}.c"))
     if len(sources) != 1:
         yield f"src/ROOM/{name}.c"
         return
-    room = sources[0].parent
+    room = root / "src" / sources[0].relative_to(root / "src").parts[0]
     if not (root / f"docs/theory/{name}.md").exists():
         yield f"a theory page, docs/theory/{name}.md"
     if not has_case(root, name, is_default):

@@ -50,7 +50,7 @@ typedef struct tobi_rigid {
                                         step began; core/constraint.h                                   */
     int is_corrected, is_clamped;    /* 1: by tobi_body_correct, a clamp in this step                   */
 
-    /* Within the step of a liquid, sph/boundary.h: */
+    /* Within the step of a liquid, sph/boundary/boundary.h: */
     double driven[6];                             /* m/s, rad/s: by tobi_body_set_velocity, last        */
     double predicted[3], predicted_spin[3];         /* m/s, rad/s: at the end of the step                 */
     double mobility[3], turn_mobility[3][3];      /* 1/kg, 1/(kg m2): velocities per impulse            */

@@ -1,7 +1,7 @@
 /* Which nodes a particle feels: their places in the array of all nodes. */
 #pragma once
 #include "mpm/grid.h"
-#include "mpm/split.k.h"
+#include "mpm/cut/split.k.h"
 
 /* What decides which nodes a particle feels, and their list: particles of one cell on one side of a cut,
    which mostly follow one another, share it. */

@@ -1,7 +1,7 @@
 /* Turns kernels.def into loops, compiled once per instruction set. */
 #include "mpm/kernels.h"
 #include "mpm/filter.k.h"
-#include "mpm/pack.k.h"
+#include "mpm/contact/pack.k.h"
 
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)

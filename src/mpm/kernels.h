@@ -11,7 +11,7 @@ typedef struct mpm_kernels {
 #undef BLOCK
 #undef PACK
 
-/* Over packs of contacts (mpm/pack.k.h). */
+/* Over packs of contacts (mpm/contact/pack.k.h). */
 #define BLOCK(K, SUMS, MAXIMA, DOC)
 #define PACK(K, SUMS, MAXIMA, DOC) tobi_kernel K;
 typedef struct mpm_pack_kernels {

@@ -10,7 +10,7 @@
 #include "mpm/material.h"
 #include "mpm/nodes.h"
 #include "mpm/state.h"
-#include "mpm/cuts.h"
+#include "mpm/cut/cuts.h"
 #include "mpm/particle_fields.h"
 #include "tobiuo/types.h"
 #include <math.h>

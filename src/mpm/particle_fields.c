@@ -1,7 +1,7 @@
 /* The fields of the material point method: how they start, what of them is shown in results. Drawback: volume
    and mass of a particle hide in unused components of its strain. */
 #include "mpm/particle_fields.h"
-#include "mpm/clamp.h"
+#include "mpm/contact/clamp.h"
 
 #define ROW(...) TOBI_FIELD_ROW(mpm_fields, __VA_ARGS__)
 static const tobi_field fields[] = { MPM_FIELDS(ROW) };

@@ -2,7 +2,7 @@
    the sides were found. A row per node with two velocities; of a node where cuts cross, one with its tree
    and one for each face of its pairs. The last column says which. */
 #include "base/error.h"
-#include "mpm/cut.h"
+#include "mpm/cut/cut.h"
 #include <stdlib.h>
 #include <string.h>
 

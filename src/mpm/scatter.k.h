@@ -4,7 +4,7 @@
    same base node. Particles need not be in the order of their base nodes; that is only faster.
    Axes are (x, y, z), rows run along z; in 2-D they are (x, nothing, y). */
 #pragma once
-#include "mpm/split.k.h"
+#include "mpm/cut/split.k.h"
 
 /* nodes: a multiple of four. */
 TOBI_FN void mpm_clear(tobi_float4 *tile, int nodes)

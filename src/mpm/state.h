@@ -1,10 +1,10 @@
 /* What the material point method keeps between steps. */
 #pragma once
-#include "mpm/clamp.h"
-#include "mpm/cut.h"
+#include "mpm/contact/clamp.h"
+#include "mpm/cut/cut.h"
 #include "mpm/grid.h"
 #include "mpm/kernels.h"
-#include "mpm/touch.h"
+#include "mpm/contact/touch.h"
 
 /* What a restart needs besides the particles: doubles only, in the order of checkpoints. Energies are sums
    over the run, J (2-D: J/m). */

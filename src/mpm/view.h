@@ -79,7 +79,7 @@ typedef struct mpm_view {
     const mpm_material *TOBI_RESTRICT material;
     const mpm_block *TOBI_RESTRICT block;
     const mpm_patch *TOBI_RESTRICT patch;
-    const tobi_columns *TOBI_RESTRICT cuts;   /* mpm/cuts.h; NULL in scenes without blades        */
+    const tobi_columns *TOBI_RESTRICT cuts;   /* mpm/cut/cuts.h; NULL in scenes without blades        */
     const float *TOBI_RESTRICT sides;  /* tiles of MPM_SIDES, around blocks with a twin: number of the cut at
                                           a node, with the sign of the side its first velocity belongs to;
                                           mpm_side_of; 0 = one velocity. One for each twin, by level of the

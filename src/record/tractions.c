@@ -1,7 +1,7 @@
 /* What the fluid presses and rubs each body with, on its surface: the pieces that the methods sum over, as
    triangles (2-D: lines) with their pressure and shear. Drawback: pieces share no corner, so that a file has
    three points a triangle. */
-#include "sph/surface.h"
+#include "sph/sensor/tractions.h"
 #include "record/record.h"
 #include "world/world.h"
 #include <stdlib.h>

@@ -2,7 +2,7 @@
    places. Drawback: types of the table are all that JSON can say. */
 #define _GNU_SOURCE 1
 #include "scene/bind.h"
-#include "scene/describe.h"
+#include "scene/describe/describe.h"
 #include "scene/spelling.h"
 #include "tobiuo/scene.h"
 #include "base/param.h"

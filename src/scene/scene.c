@@ -2,7 +2,7 @@
 #define _GNU_SOURCE 1
 #include "scene/scene.h"
 #include "base/plain.h"
-#include "scene/import.h"
+#include "scene/import/import.h"
 #include "scene/openings.h"
 #include "scene/override.h"
 #include "scene/parts.h"

@@ -9,7 +9,7 @@
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
 #include "sph/dfsph.h"
-#include "sph/boundary.h"
+#include "sph/boundary/boundary.h"
 #include "linear/multigrid.h"
 #include "linear/solve.h"
 #include "sph/kernels.h"

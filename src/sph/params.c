@@ -1,7 +1,7 @@
 /* Parameters of the SPH methods. */
 #include "base/param_rows.h"
 #include "sph/dfsph.h"
-#include "sph/isph.h"
+#include "sph/isph/isph.h"
 #include "sph/wcsph.h"
 
 /* Of every SPH method. */

@@ -1,7 +1,7 @@
 /* The level below which water counts as still follows the lowest part of the free surface: down at
    once, up slowly. Drawback: one level for the whole vessel. */
 #include "sph/state.h"
-#include "sph/around.h"
+#include "sph/sensor/around.h"
 #include "sph/hydrostatic.h"
 #include "sph/reference.h"
 #include "geom/vec3.h"

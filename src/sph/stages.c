@@ -2,7 +2,7 @@
    Drawback: a method must bind its view again after each sort. */
 #include "sph/state.h"
 #include "sph/stages.h"
-#include "sph/boundary.h"
+#include "sph/boundary/boundary.h"
 #include "sph/openings.h"
 #include "sph/phases.h"
 #include "sph/viscosity.h"

@@ -2,7 +2,7 @@
 #pragma once
 #include "core/system.h"
 #include "sph/fields.h"
-#include "sph/boundary_links.h"
+#include "sph/boundary/links.h"
 #include "sph/soft.h"
 #include "sph/reference_pressure.h"
 
@@ -18,7 +18,7 @@ typedef struct sph_state {
     int marked;                     /* 1: the `held` of particles is that of the present rows       */
     tobi_float4 normal[TOBI_OPENING_LIMIT];      /* of openings                                     */
     int mirrors;                    /* 1: walls are mirrors (isph), 0: integrals of the kernel          */
-    int past_edges;                 /* 1: pairs past blunt edges of bodies stay, boundary_pairs.c     */
+    int past_edges;                 /* 1: pairs past blunt edges of bodies stay, boundary/pairs.c     */
 } sph_state;
 
 static inline sph_state *sph_of(const tobi_system *s) { return s->state; }

@@ -2,7 +2,7 @@
    velocities of those that move by forces are unknowns beside the particles'. Drawback: six more sums over
    what particles see of bodies in each step, for the friction of each body with itself. */
 #include "sph/viscous_bodies.h"
-#include "sph/boundary.h"
+#include "sph/boundary/boundary.h"
 #include "sph/state.h"
 #include "sph/viscosity.k.h"
 #include "geom/matrix6.h"

@@ -6,7 +6,7 @@
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
 #include "sph/wcsph.h"
-#include "sph/boundary.h"
+#include "sph/boundary/boundary.h"
 #include "sph/kernels.h"
 #include "sph/openings.h"
 #include "sph/stages.h"

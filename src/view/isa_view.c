@@ -1,7 +1,7 @@
 /* Turns kernels.def into loops, compiled once per instruction set. An item is work enough to be launched on
    its own. Drawback: the view is read through its pointer in each item. */
 #include "view/kernels.h"
-#include "view/surface.k.h"
+#include "view/surface/surface.k.h"
 
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)

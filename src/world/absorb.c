@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "geom/vec3.h"
 #include "rigid/waves.h"
-#include "sph/sensor.h"
+#include "sph/sensor/sensor.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* Solids that rigid bodies hold (decisions 83, 97): which bodies, and whether they can. Drawback: scenes say
    the same with line and column before the world is made. */
 #include "base/error.h"
-#include "mpm/clamp.h"
+#include "mpm/contact/clamp.h"
 #include "world/world.h"
 #include <stdio.h>
 #include <stdlib.h>

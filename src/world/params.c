@@ -4,7 +4,7 @@
 #include "base/param_rows.h"
 #include "mpm/mlsmpm.h"
 #include "sph/dfsph.h"
-#include "sph/isph.h"
+#include "sph/isph/isph.h"
 #include "sph/wcsph.h"
 #include "tobiuo/tobiuo.h"
 #include "world/methods.h"

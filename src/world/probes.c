@@ -1,8 +1,8 @@
 /* The world's probes: added by definition, read by number. One that sits on a body is turned and shifted with
    it. Drawback: bodies that deform have no pose that a probe could follow, and are refused. */
 #include "base/error.h"
-#include "sph/probe.h"
-#include "sph/sensor.h"
+#include "sph/sensor/probe.h"
+#include "sph/sensor/sensor.h"
 #include "base/param.h"
 #include "geom/vec3.h"
 #include "world/names.h"

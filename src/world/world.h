@@ -1,6 +1,6 @@
 /* The inside of a tobi_world. */
 #pragma once
-#include "mpm/pieces.h"
+#include "mpm/cut/pieces.h"
 #include "tobiuo/tobiuo.h"
 #include "world/fill.h"
 #include "world/methods.h"

@@ -53,6 +53,8 @@ CASES = [
     ("check_house.py", "docs/decisions/0001-a.md", "# 1. A\n\nStatus: accepted.\n", None),
     ("check_layers.py", "src/geom/a.c", '#include "exec/exec.h"\n', None),
     ("check_layers.py", "src/exec/a.c", '#include "geom/x.h"\n', "exec includes geom"),
+    ("check_layers.py", "src/sph/a.c", '#include "sph/isph/solve.h"\n', 'a.c:1: "sph/isph/solve.h" is of one method'),
+    ("check_layers.py", "src/sph/isph/a.c", '#include "sph/isph/solve.h"\n', None),
     ("check_layers.py", "src/sph/a.k.h", "#include <math.h>\n", "a.k.h:1: includes a header of the system"),
     ("check_layers.py", "src/sph/a.k.h", "\nvoid f(int a,\n       int b);\n", "a.k.h:2: declares a function,"),
     ("check_layers.py", "src/sph/a.k.h", "typedef int (*f)(int);\n", "a.k.h:1: declares a function pointer"),

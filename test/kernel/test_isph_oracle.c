@@ -2,8 +2,8 @@
    images in double, and the same bits on every instruction set. Then what the matrix and the operators
    promise. */
 #include "sph/kernels.h"
-#include "sph/isph.k.h"
-#include "sph/isph_body_pairs.k.h"
+#include "sph/isph/isph.k.h"
+#include "sph/isph/body_pairs.k.h"
 #include "core/smoothing.h"
 #include "kernel/smoothing_oracle.h"
 #include "unit/poisson_rig.h"

@@ -2,7 +2,7 @@
    weights are random; packs of one to four contacts share nodes. */
 #include "exec/exec.h"
 #include "mpm/kernels.h"
-#include "mpm/pack.k.h"
+#include "mpm/contact/pack.k.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,7 +2,7 @@
    node, the means at vertices. Walls and groups too. */
 #include "unit/calls.h"
 #include "unit/surface_rig.h"
-#include "view/surface.h"
+#include "view/surface/surface.h"
 
 #define D 0.01
 

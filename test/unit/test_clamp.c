@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include "calls.h"
-#include "mpm/clamp.h"
+#include "mpm/contact/clamp.h"
 #include "mpm/particle_fields.h"
 #include "clamp_rig.h"
 #include "world/world.h"

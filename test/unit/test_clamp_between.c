@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "calls.h"
-#include "mpm/clamp.h"
+#include "mpm/contact/clamp.h"
 #include "mpm/particle_fields.h"
 #include "solid_rig.h"
 #include "momenta_rig.h"

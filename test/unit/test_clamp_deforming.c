@@ -9,7 +9,7 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include "calls.h"
-#include "mpm/clamp.h"
+#include "mpm/contact/clamp.h"
 #include "mpm/particle_fields.h"
 #include "clamp_rig.h"
 #include "world/world.h"

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include "tobiuo/tobiuo.h"
-#include "mpm/contact.h"
+#include "mpm/contact/contact.h"
 #include "mpm/particle_fields.h"
 #include "world/world.h"
 #include <math.h>

@@ -1,8 +1,8 @@
 /* How easily water moves a body, and sound: what bounds the steps of an explicit coupling; the loads on a
    body, and their sums over what particles see of it. */
 #include "calls.h"
-#include "mpm/contact.h"
-#include "sph/boundary.h"
+#include "mpm/contact/contact.h"
+#include "sph/boundary/boundary.h"
 #include "sph/hydrostatic.h"
 #include "sph/state.h"
 #include "world/world.h"

@@ -13,7 +13,7 @@
 #include "calls.h"
 #include "mpm/particle_fields.h"
 #include "base/param.h"
-#include "mpm/cuts.h"
+#include "mpm/cut/cuts.h"
 #include "geom/vec3.h"
 #include "world/world.h"
 

@@ -2,7 +2,7 @@
 #include "tobiuo/tobiuo.h"
 #include "calls.h"
 #include "core/smoothing.k.h"
-#include "sph/isph.h"
+#include "sph/isph/isph.h"
 #include <math.h>
 #include <cmocka.h>
 

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 #include "scene/scene.h"
-#include "sph/isph_verbs.h"
+#include "sph/isph/verbs.h"
 #include "world/world.h"
 
 #define VESSEL "\"bodies\": [ { \"name\": \"tank\", \"vessel\": true, \"box\": { \"min\": [0, 0],"  \

@@ -11,7 +11,7 @@
 #include "tobiuo/tobiuo.h"
 #include "mpm/mlsmpm.h"
 #include "sph/dfsph.h"
-#include "sph/isph.h"
+#include "sph/isph/isph.h"
 #include "sph/wcsph.h"
 #include "base/param.h"
 

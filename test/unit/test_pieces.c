@@ -13,7 +13,7 @@
 #include <unistd.h>
 #include "solid_rig.h"
 #include "mpm/particle_fields.h"
-#include "mpm/cuts.h"
+#include "mpm/cut/cuts.h"
 #include "tobiuo/run.h"
 #include "world/world.h"
 

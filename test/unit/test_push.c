@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <math.h>
-#include "sph/boundary.h"
+#include "sph/boundary/boundary.h"
 #include "sph/state.h"
 #include "world/world.h"
 

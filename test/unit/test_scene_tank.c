@@ -13,7 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "calls.h"
-#include "scene/import_tank.h"
+#include "scene/import/tank.h"
 #include "scene/scene.h"
 
 static char folder[] = "/tmp/tobiuo_tank_XXXXXX";

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include "calls.h"
 #include "clamp_rig.h"
-#include "mpm/clamp.h"
+#include "mpm/contact/clamp.h"
 #include "momenta_rig.h"
 
 static const double SPACING = 0.025, BEAT = 24, BEATEN = 0.27;

@@ -3,7 +3,7 @@
 #define _GNU_SOURCE 1
 #include "calls.h"
 #include "surface_rig.h"
-#include "view/surface.h"
+#include "view/surface/surface.h"
 #include <stdio.h>
 
 #define D 0.01
