@@ -114,11 +114,35 @@ static void scales_show_on_dark_water(void **state)
     free(with);
 }
 
+static int green_of(float value)
+{
+    enum { ACROSS = 160, DOWN = 90 };
+    static const double position[1][3] = { { 0.5, 0.5, 0 } };
+    static uint8_t pixel[3*ACROSS*DOWN];
+    tobi_error err;
+    tobi_picture f = tobi_default_picture();
+    f.width = ACROSS, f.height = DOWN, f.dimension = 2;
+    f.box_max[0] = f.box_max[1] = 1;
+    f.positions = position, f.values = &value, f.particle_count = 1, f.radius = 9, f.value_max = 1;
+    assert_int_equal(tobi_picture_draw(&f, pixel, &err), TOBI_OK);
+    return pixel[3*(DOWN/2*ACROSS + ACROSS/2) + 1];
+}
+
+/* A wave at a tenth of the largest speed differs from water at rest, and 0.8 from 1. */
+static void slow_water_differs_from_water_at_rest(void **state)
+{
+    (void)state;
+    const int rest = green_of(0), slow = green_of(0.1f), fast = green_of(0.8f), fastest = green_of(1);
+    print_message("green %d, %d, %d, %d\n", rest, slow, fast, fastest);
+    assert_true(slow > rest + 45 && fast > slow && fastest > fast + 10);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_and_lines_stay_inside), cmocka_unit_test(lines_are_as_thick_as_asked),
         cmocka_unit_test(scales_show_on_dark_water),
+        cmocka_unit_test(slow_water_differs_from_water_at_rest),
         cmocka_unit_test(text_is_as_wide_as_said), cmocka_unit_test(a_picture_in_memory_is_that_of_the_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
