@@ -1,9 +1,8 @@
 /* A motion is a script, keyframes or numbers, or a list of them: turns first, then all shifts. Drawback: what
    the kinds share, as times, stands in the table of each. */
 #define _GNU_SOURCE 1
-#include "scene/motions.h"
+#include "scene/scene.h"
 #include "scene/parts.h"
-#include "tobiuo/scene.h"
 #include "scene/write.h"
 #include "base/param_rows.h"
 #include "base/param.h"
@@ -341,10 +340,11 @@ static tobi_motion *bind_one(const tobi_binder *binder, json_t *value, const tob
     tobi_param_defaults(table, &def->as);
     tobi_place inner = { place, table->name, 0 }, params = { place, "params", 0 };
     def->params = json_object_get(value, "params");
-    if (table == &tables[0]) tobi_bind(binder, table, value, place, beside_script, &def->as);
-    else tobi_bind(binder, table, json_object_get(value, table->name), &inner, NULL, &def->as);
+    const int script = table == &tables[0];
+    const tobi_bound bound = tobi_bind(binder, table, script ? value : json_object_get(value, table->name),
+                                       script ? place : &inner, script ? beside_script : NULL, &def->as);
     check_plane(binder, table, &inner);
-    if (def->params && table != &tables[0])
+    if (def->params && !script)
         tobi_source_mistake_at_key(binder->source, &params,
                                    "params belong to a script; %s takes none", table->name);
     else if (def->params && !json_is_object(def->params))
@@ -357,6 +357,7 @@ static tobi_motion *bind_one(const tobi_binder *binder, json_t *value, const tob
     def->table = table;
     if (create_motion(def, &motion, &err) != TOBI_OK)
         tobi_source_mistake(binder->source, &inner, "%s", err.text);
+    else tobi_unused_check_motion(binder->source, table, &inner, &def->as, bound);
     return motion;
 }
 
@@ -395,6 +396,7 @@ static json_t *write_one(const tobi_motion_def *def)
 {
     json_t *own = tobi_write_def(def->table, &def->as), *motion = own;
     int failed = !own;
+    tobi_unused_drop(NULL, def->table, &def->as, own);
     if (def->table == &tables[0]) {
         if (def->params) failed |= json_object_set(own, "params", def->params);
     } else {

@@ -139,8 +139,11 @@ void tobi_check_name(const tobi_scene *scene, tobi_source *source, const tobi_pl
 void tobi_check_file(tobi_source *source, const tobi_place *place, const char *path);
 
 /* unused.c: reports keys that are given and that nothing would read; takes them out of what the definition
-   of a table has become, for resolved.json. def: the body's or solid's definition, NULL for other tables. */
+   of a table has become, for resolved.json. def: of the body, solid or motion, NULL for other tables. Motions
+   need no scene. */
 void tobi_unused_check(const tobi_scene *scene, tobi_source *source);
+void tobi_unused_check_motion(tobi_source *source, const tobi_param_table *table, const tobi_place *place,
+                              const void *def, tobi_bound bound);
 void tobi_unused_drop(const tobi_scene *scene, const tobi_param_table *table, const void *def,
                       json_t *object);
 

@@ -15,9 +15,12 @@ typedef enum reader {
     SLOPE,           /* solids that break; sand always has one    */
     FLIP, XPIC,      /* ways to the grid and back                 */
     GMRES,           /* the solver of isph                        */
-    SWEEPS           /* several of eisph: one is the same by both */
+    SWEEPS,          /* several of eisph: one is the same by both */
+    REGULAR, IRREGULAR, PEAK, RAMP, OWN      /* waves of a maker; OWN: any */
 } reader;
 
+#define NOT_REGULAR "is for regular waves, which have a regular.height"
+#define NOT_IRREGULAR "is for irregular waves, which have an irregular.height"
 #define UNMOVED "is for free and controlled bodies, this one is prescribed"
 
 static const struct {
@@ -55,6 +58,18 @@ static const struct {
     { "isph", "restart", GMRES, "is for \"solver\": \"gmres\"" },
     { "eisph", "iteration", SWEEPS, "is pseudo-time, and one sweep of that is one of jacobi; allowed "
                                     "with it are \"sweeps\": 2 or more, or 0" },
+#define WAVES(maker) \
+    { maker, "regular.period", REGULAR, NOT_REGULAR }, { maker, "regular.phase", REGULAR, NOT_REGULAR }, \
+    { maker, "irregular.peak_period", IRREGULAR, NOT_IRREGULAR }, \
+    { maker, "irregular.spectrum", IRREGULAR, NOT_IRREGULAR }, \
+    { maker, "irregular.seed", IRREGULAR, NOT_IRREGULAR }, \
+    { maker, "irregular.components", IRREGULAR, NOT_IRREGULAR }, \
+    { maker, "irregular.peakedness", PEAK, "is for irregular waves of the spectrum jonswap" }, \
+    { maker, "ramp", RAMP, "is for regular and irregular waves" }
+    WAVES("piston"), WAVES("flap"),
+#undef WAVES
+    { "piston", "regular.order", REGULAR, NOT_REGULAR },
+    { "piston", "start", OWN, "is for waves of its own, which this piston does not make" },
 };
 enum { KEYS = sizeof keys/sizeof *keys };
 
@@ -64,9 +79,22 @@ static const void *find_def(const tobi_scene *scene, const char *method)
     return scene->method && strcmp(scene->method->name, method) == 0 ? scene->method_def : NULL;
 }
 
-/* def: of the body or solid whose keys are asked for, else NULL. */
+static int makes(const tobi_wave_maker_def *waves, reader who)
+{
+    const int regular = waves->height > 0, irregular = waves->significant_height > 0;
+    switch (who) {
+    case REGULAR: return regular;
+    case IRREGULAR: return irregular;
+    case PEAK: return irregular && waves->spectrum == TOBI_JONSWAP;
+    case RAMP: return regular || irregular;
+    default: return regular || irregular || waves->solitary_height > 0;
+    }
+}
+
+/* def: of the body, solid or wave maker whose keys are asked for, else NULL. */
 static int is_there(const tobi_scene *scene, const void *def, reader who)
 {
+    if (who >= REGULAR) return makes(def, who);
     const tobi_body_def *body = def;
     const tobi_solid_def *solid = def;
     const tobi_mlsmpm_def *solids = find_def(scene, "mlsmpm");
@@ -149,6 +177,12 @@ static void check_friction(const tobi_scene *scene, tobi_source *source, const t
             tobi_source_mistake_at_key(source, &rub, "is for planes of the kind separate, this one is %s",
                                        plane->kind == TOBI_PLANE_SLIP ? "slip" : "no-slip");
     }
+}
+
+void tobi_unused_check_motion(tobi_source *source, const tobi_param_table *table, const tobi_place *place,
+                              const void *def, tobi_bound bound)
+{
+    check(NULL, source, table, place, def, bound);
 }
 
 void tobi_unused_check(const tobi_scene *scene, tobi_source *source)

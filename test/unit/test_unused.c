@@ -72,6 +72,14 @@ typedef struct row { const char *key; lines bad, good; const char *place, *why; 
     { key_, { "mlsmpm", "", "", ", \"" key_ "\": " value, "" },                                              \
       { "mlsmpm", "", "", ", \"blade\": true, \"" key_ "\": " value, "" }, "s.json:5:",  \
       "bodies[0]." key_ ": is for a blade, which this body is not" }
+#define MAKER(table, waves) ", \"motion\": { \"" table "\": { \"depth\": 1, " waves " } }"
+#define WAVES(key_, table, path, bad, good, why) \
+    { key_, { "dfsph", "", "", MAKER(table, bad), "" }, \
+      { "dfsph", "", "", MAKER(table, good), "" }, "s.json:5:", \
+      "bodies[0].motion." table "." path ": " why }
+#define SWELL "\"regular\": { \"height\": 0.1, \"period\": 2 }"
+#define SEA(more) "\"irregular\": { \"height\": 0.1, \"peak_period\": 2" more " }"
+#define CREST "\"solitary\": { \"height\": 0.1 }"
 #define SAND ", \"model\": \"sand\""
 #define RISES(key_, value) \
     { key_, { "mlsmpm", "", "", "", SAND ", \"" key_ "\": " value },                                     \
@@ -112,6 +120,18 @@ static const row rows[] = {
     { "friction_angle", { "mlsmpm", "", "", "", ", \"friction_angle\": 20" },
       { "mlsmpm", "", "", "", SAND ", \"friction_angle\": 20" }, "s.json:4:",
       "solids[0].friction_angle: is for a strength, which this solid has not" },
+    WAVES("peakedness", "piston", "irregular.peakedness",
+          SEA(", \"spectrum\": \"pierson-moskowitz\", \"peakedness\": 2"), SEA(", \"peakedness\": 2"),
+          "is for irregular waves of the spectrum jonswap"),
+    WAVES("components", "piston", "irregular.components", SWELL ", \"irregular\": { \"components\": 9 }",
+          SEA(", \"components\": 9"), "is for irregular waves"),
+    WAVES("phase", "flap", "regular.phase", "\"hinge\": [1, 1, 0], \"regular\": { \"phase\": 9 }, " SEA(""),
+          "\"hinge\": [1, 1, 0], \"regular\": { \"height\": 0.1, \"period\": 2, \"phase\": 9 }",
+          "is for regular waves, which have a regular.height"),
+    WAVES("ramp", "piston", "ramp", CREST ", \"ramp\": 1", SWELL ", \"ramp\": 1",
+          "is for regular and irregular waves"),
+    WAVES("start", "piston", "start", "\"absorb\": true, \"start\": 1", CREST ", \"start\": 1",
+          "is for waves of its own"),
 };
 
 static void test_keys(void **state)
