@@ -9,6 +9,8 @@ static const double SPACINGS = 2e5;
 static const double DISTANCE = 1e12;
 /* A machine makes some thousand steps a second: more would take weeks. */
 static const double STEPS = 1e9;
+/* s: the squares of shorter ones are lost in single precision. */
+static const double LEAST_TIME = 1e-12;
 
 enum { PATIENCE = 100 };                  /* steps: a short one now and then is none of our business */
 
@@ -26,6 +28,13 @@ static tobi_status check_box(const tobi_world_def *d, int sph, tobi_error *err)
                              DISTANCE);
     }
     return TOBI_OK;
+}
+
+static tobi_status check_end(const tobi_world_def *d, tobi_error *err)
+{
+    if (d->end_time == 0 || d->end_time >= LEAST_TIME) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "is %g s; allowed are 0, the start alone, and %g s and more",
+                     d->end_time, LEAST_TIME);
 }
 
 static tobi_status check_steps(const tobi_world_def *d, double step, tobi_error *err)
@@ -49,6 +58,8 @@ tobi_status tobi_limits_check(const tobi_world_def *d, int sph, const char **key
 {
     *key = "spacing";
     TOBI_TRY(check_box(d, sph, err));
+    *key = "end_time";
+    TOBI_TRY(check_end(d, err));
     *key = "time_step";
     TOBI_TRY(check_steps(d, d->time_step, err));
     *key = "time_step_max";

@@ -54,7 +54,7 @@ static const tobi_param world_rows[] = {
       .doc = "Distance between fluid particles: the resolution. Where layers do not fit into the boxes of "
              "fluid, it gives way by up to 5 %, so that the particles hold the boxes' volume exactly." },
     { .key = "end_time", REAL, AT(tobi_world_def, end_time), RANGE(0, 1e9), .unit = "s", .required = true,
-      .doc = "Simulated time at which the run ends." },
+      .doc = "Simulated time at which the run ends; 0: the start alone." },
     { .key = "time_step", REAL, AT(tobi_world_def, time_step), DURATION, .unit = "s",
       .text = "adaptive",
       .doc = "A fixed time step, but that the last eight before an output fit it; adaptive chooses each "

@@ -191,6 +191,13 @@ static void numbers_that_do_not_fit_each_other(void **state)
     REFUSED(tobi_world_create(&s.world, NULL, &w, &err), TOBI_INVALID,
             "spacing: is 1e-07 m, and the domain lies up to 2e+12 times that from the origin along y");
     make_setup(&s, "dfsph");
+    s.world.end_time = 1e-300;
+    REFUSED(tobi_world_create(&s.world, NULL, &w, &err), TOBI_INVALID,
+            "end_time: is 1e-300 s; allowed are 0, the start alone, and 1e-12 s and more");
+    s.world.end_time = 0;
+    OK(tobi_world_create(&s.world, NULL, &w, &err));
+    tobi_world_destroy(w);
+    make_setup(&s, "dfsph");
     s.world.time_step = 1e-10;
     REFUSED(tobi_world_create(&s.world, NULL, &w, &err), TOBI_INVALID,
             "time_step: is 1e-10 s and makes 1e+10 steps until end_time, 1 s; allowed are up to 1e+09");
