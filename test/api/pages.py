@@ -77,7 +77,6 @@ def write_scripts(path):
         (folder / "scene.json").write_text(scene)
         (folder / name).write_text(script)
         scenes.append(folder)
-    os.symlink(ROOT / "scenes/apple_cut", "scenes/apple_cut")
     return scenes
 
 
@@ -91,7 +90,7 @@ def check_scripts(program):
                 print(f"{path}: {scene}:", run.stderr)
                 failed += 1
     print(f"{count} examples, {failed} failed")
-    return failed or count < 10
+    return failed or count < 8
 
 
 def parse(text):
