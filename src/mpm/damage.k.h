@@ -35,8 +35,8 @@ TOBI_FN lane mpm_damage(const mpm_parameters *m, lane s, lane tau)
     return lane_where_less(opened, one, share, lane_where_less(lane_set(0), over, one, lane_set(0)));
 }
 
-/* Hencky strains h of the cracked share, eq. (19): apart it has no shape, pressed it keeps the shape that
-   friction holds. Its volume is kept up to e^2, at which faces have long lost sight of each other. */
+/* Hencky strains h of the cracked share, tau_c of eq. (17): apart it has no shape, pressed it keeps the shape
+   that friction holds. Its volume is kept up to e^2, at which faces have long lost sight of each other. */
 TOBI_FN void mpm_cracked_strain(const mpm_parameters *m, const lane h[3], lane out[3])
 {
     lane trace = h[0] + h[1] + h[2], mean = trace*(1.0f/3), d[3], norm = lane_set(1e-30f), zero = lane_set(0);
