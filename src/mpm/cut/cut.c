@@ -1,5 +1,5 @@
 /* A cut is memory of particles: the side on which each lies of the edge that passed it. Nodes with
-   both sides get a second velocity. Drawback: two cuts through one node share two velocities. */
+   both sides get a second velocity, where cuts cross more. Drawback: a particle remembers three cuts only. */
 #include "mpm/cut/cut.h"
 #include "base/error.h"
 #include "mpm/cut/blade.h"
