@@ -3,7 +3,8 @@
 
 usage: pages.py tables PROGRAM | scripts PROGRAM | readme PROGRAM | commands PROGRAM | links
   tables   docs/tables.md is what `tobiuo describe tables` prints, and names the columns of a real run
-  scripts  each scene of docs/scripts.md, with the script beside it, is accepted and runs its first steps
+  scripts  each scene of docs/scripts.md, with the script beside it, and each scene of the other pages
+           in docs/ that names no file is accepted and runs its first steps
   readme   the scene in README is scenes/ball_drop; its commands are accepted (check for run)
   commands every `tobiuo run` and `tobiuo check` of a scene of the tree, on any page, is accepted
   links    every relative link and picture of every page leads to a file, and to a heading of it; the
@@ -80,17 +81,29 @@ def write_scripts(path):
     return scenes
 
 
+def write_scenes(page):
+    """The whole scenes of a page that need no other file; a piece of a scene has no domain."""
+    blocks = re.findall(r"^```(?:jsonc)?\n(\{\n.*?)^```", page.read_text(), re.S | re.M)
+    scenes = []
+    for number, scene in enumerate(blocks):
+        if '"domain"' in scene and not re.search(r'"(mesh|file|script)":', scene):
+            scenes.append(pathlib.Path(f"{page.stem}{number}.json"))
+            scenes[-1].write_text(scene)
+    return scenes
+
+
 def check_scripts(program):
     failed = count = 0
-    for path in SCRIPT_PAGES:
-        for scene in write_scripts(path):
+    others = [page for page in sorted(ROOT.glob("docs/*.md")) if str(page.relative_to(ROOT)) not in SCRIPT_PAGES]
+    for path in SCRIPT_PAGES + others:
+        for scene in write_scripts(path) if path in SCRIPT_PAGES else write_scenes(path):
             count += 1
             run = call(program, "run", str(scene), "--quiet", "--force", "--until", "0.01", "--out", "run")
             if run.returncode != 0:
                 print(f"{path}: {scene}:", run.stderr)
                 failed += 1
     print(f"{count} examples, {failed} failed")
-    return failed or count < 8
+    return failed or count < 12
 
 
 def parse(text):
