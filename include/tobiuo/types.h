@@ -276,8 +276,8 @@ typedef struct tobi_body_def {
     double rotation_angle;      /* degrees                                                           */
     double translation[3];      /* m; last                                                           */
     int    vessel;              /* 1: a vessel; a mesh without walls of its own is its inner surface */
-    double wall_thickness;      /* m, of the walls outside of that surface; 0 = its own walls, or 2
-                                   spacings where it has none                                        */
+    double wall_thickness;      /* m, outside of that surface; 0 = its own walls, or else 2 spacings */
+    double open_side[3];        /* direction of the flat side that a vessel has not; 0 = it has all  */
     double density;             /* kg/m3                                                             */
     double spacing;             /* m, spacing of the body's own particles; 0 = the fluid's           */
     int    friction;            /* tobi_friction felt by the fluid                                   */

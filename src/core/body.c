@@ -333,8 +333,8 @@ static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, const tobi_
     if (hint[0]) tobi_mesh_note(&b->mesh, "%s", hint);
     const char *name = def->mesh ? def->mesh : b->name;
     if (def->vessel)
-        TOBI_TRY(tobi_mesh_make_vessel(&b->mesh, def->wall_thickness, VESSEL_WALLS*b->spacing, dimension,
-                                       name, err));
+        TOBI_TRY(tobi_mesh_make_vessel(&b->mesh, def->wall_thickness, VESSEL_WALLS*b->spacing,
+                                       def->open_side, dimension, name, err));
     else TOBI_TRY(tobi_mesh_orient(&b->mesh, name, err));
     if (dimension == 3) TOBI_TRY(tobi_massprops_volume(&b->mesh, &b->rest, err));
     else TOBI_TRY(tobi_massprops_section(&b->mesh, &b->rest, err));

@@ -10,6 +10,7 @@
 
 enum { SAMPLES = 20 };                       /* places per axis that are asked for pockets              */
 static const double POCKET = 0.02;           /* of the box: less is no room                             */
+static const double FLAT = 1e-6;             /* of the mesh's extent                                    */
 static const double STEEPEST = 0.3;          /* cosine: corners get no spikes longer than 1/STEEPEST    */
 
 /* Whether a place outside of the solid sees it in all directions but one: walls all round, and a floor. */
@@ -160,12 +161,39 @@ static int thicken(const tobi_mesh *in, double thickness, tobi_mesh *out)
     return good;
 }
 
-tobi_status tobi_mesh_make_vessel(tobi_mesh *mesh, double thickness, double usual, int dimension,
-                                  const char *name, tobi_error *err)
+/* Leaves out the triangles that lie farthest towards `open`. */
+static tobi_status open_side(tobi_mesh *m, const double open[3], const char *name, tobi_error *err)
 {
+    const int64_t all = m->triangle_count;
+    double to[3] = { open[0], open[1], open[2] }, low = INFINITY, high = -INFINITY;
+    vec3_normalize(to);
+    for (int64_t v = 0; v < m->vertex_count; v++) {
+        low = fmin(low, vec3_dot(to, m->vertices[v]));
+        high = fmax(high, vec3_dot(to, m->vertices[v]));
+    }
+    m->triangle_count = 0;
+    for (int64_t t = 0; t < all; t++) {
+        int flat = 1;
+        for (int c = 0; c < 3; c++)
+            flat &= vec3_dot(to, m->vertices[m->triangles[t][c]]) >= high - FLAT*(high - low);
+        if (!flat) memmove(m->triangles[m->triangle_count++], m->triangles[t], sizeof *m->triangles);
+    }
+    if (m->triangle_count < all) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "mesh '%s': open_side [%g, %g, %g]: no flat side lies farthest that "
+                     "way", name, open[0], open[1], open[2]);
+}
+
+tobi_status tobi_mesh_make_vessel(tobi_mesh *mesh, double thickness, double usual, const double open[3],
+                                  int dimension, const char *name, tobi_error *err)
+{
+    const int opens = vec3_length(open) > 0;
     int walled = 0;
     if (!(thickness > 0)) TOBI_TRY(has_walls(mesh, dimension, name, &walled, err));
+    if (walled && opens)
+        return tobi_fail(err, TOBI_INVALID, "mesh '%s': open_side is for an inner surface; this mesh has "
+                         "walls of its own", name);
     if (walled) return tobi_mesh_orient_vessel(mesh, name, err);
+    if (opens) TOBI_TRY(open_side(mesh, open, name, err));
     tobi_mesh out = { 0 };
     const double t = thickness > 0 ? thickness : usual;
     TOBI_TRY(tobi_mesh_orient_open(mesh, name, err));

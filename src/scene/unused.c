@@ -49,6 +49,7 @@ static const struct {
     EDGE("edge_resistance"), EDGE("edge_angle"), EDGE("edge_start"), EDGE("edge_end"),
 #undef EDGE
     { "body", "wall_thickness", VESSEL, "is for a vessel, which this body is not" },
+    { "body", "open_side", VESSEL, "is for a vessel, which this body is not" },
 #define RISING(key) { "solid", key, RISE, "is for a friction_rise, which this solid has not" }
     RISING("grain_diameter"), RISING("inertial_number"),
 #undef RISING
@@ -107,7 +108,8 @@ static int is_there(const tobi_scene *scene, const void *def, reader who)
     case SOLIDS: return method.solids || scene->solid_count > 0;
     case FORCES: return body->dynamics != TOBI_PRESCRIBED;
     case BLADE: return body->blade;
-    case VESSEL: return body->vessel || !(body->wall_thickness > 0);
+    case VESSEL: return body->vessel || (!(body->wall_thickness > 0) && !body->open_side[0] &&
+                                         !body->open_side[1] && !body->open_side[2]);
     case RISE: return !tobi_solid_uses(solid->model, "friction_rise") || solid->friction_rise > 0;
     case SLOPE: return !tobi_solid_uses(solid->model, "strength") || solid->strength > 0;
     case FLIP: return !solids || solids->transfer == TOBI_FLIP;

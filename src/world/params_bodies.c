@@ -56,6 +56,9 @@ static const tobi_param body_rows[] = {
       .text = "automatic",
       .doc = "Thickness of a vessel's walls outside of the mesh; automatic takes the mesh's own walls, or 2 "
              "spacings where it has none." },
+    { .key = "open_side", VEC3, AT(tobi_body_def, open_side), DIRECTION, .unit = "1",
+      .doc = "Direction of the flat side, as the body starts, that a vessel of a box, a cylinder or a mesh "
+             "without walls leaves open: [0, 0, 1] makes a cup of a box; zero leaves none open." },
     { .key = "density", REAL, AT(tobi_body_def, density), .def = { 1000 }, DENSITY,
       .unit = "kg/m3", .doc = "Density of the body, for its mass and inertia." },
     { .key = "spacing", REAL, AT(tobi_body_def, spacing), LENGTHS, .unit = "m", .text = "fluid",

@@ -27,11 +27,14 @@ static tobi_mesh make_box(int triangles)
     return m;
 }
 
+static const double shut[3];
+
 static double make_vessel(tobi_mesh *m, double thickness, int dimension)
 {
     tobi_error err = { 0 };
     tobi_massprops props;
-    if (tobi_mesh_make_vessel(m, thickness, 0.1, dimension, "box", &err) != TOBI_OK) fail_msg("%s", err.text);
+    if (tobi_mesh_make_vessel(m, thickness, 0.1, shut, dimension, "box", &err) != TOBI_OK)
+        fail_msg("%s", err.text);
     assert_int_equal(tobi_massprops_volume(m, &props, &err), TOBI_OK);
     return props.volume;
 }
@@ -55,6 +58,31 @@ static void test_walls(void **state)
     tobi_mesh_free(&open);
 }
 
+/* A cube without one side is that which was read without it; what has no such side is refused. */
+static void test_open_sides(void **state)
+{
+    (void)state;
+    static const double up[3] = { 0, 0, 2 }, left[3] = { -1, 0, 0 }, slanted[3] = { 1, 1, 0 };
+    tobi_error err = { 0 };
+    tobi_massprops props;
+    for (int k = 0; k < 2; k++) {
+        tobi_mesh m = make_box(12);
+        assert_int_equal(tobi_mesh_make_vessel(&m, 0, 0.1, k ? up : left, 3, "box", &err), TOBI_OK);
+        assert_int_equal(tobi_massprops_volume(&m, &props, &err), TOBI_OK);
+        assert_float_equal(props.volume, 1.2*1.2*1.1 - 1, 1e-9);
+        assert_null(strstr(m.notes, "closed all round"));
+        assert_int_equal(tobi_mesh_make_vessel(&m, 0, 0.1, up, 3, "box", &err), TOBI_INVALID);
+        if (!strstr(err.text, "open_side is for an inner surface; this mesh has walls of its own"))
+            fail_msg("%s", err.text);
+        tobi_mesh_free(&m);
+    }
+    tobi_mesh m = make_box(12);
+    assert_int_equal(tobi_mesh_make_vessel(&m, 0, 0.1, slanted, 3, "box", &err), TOBI_INVALID);
+    if (!strstr(err.text, "open_side [1, 1, 0]: no flat side lies farthest that way"))
+        fail_msg("%s", err.text);
+    tobi_mesh_free(&m);
+}
+
 /* A channel in 2-D has its ends too: a floor and two sides alone do not say where their inside is. */
 static void test_channel(void **state)
 {
@@ -66,7 +94,7 @@ static void test_channel(void **state)
     tobi_mesh m;
     tobi_error err = { 0 };
     assert_int_equal(tobi_mesh_build("channel", 8, at, 6, channel, &m, &err), TOBI_OK);
-    assert_int_equal(tobi_mesh_make_vessel(&m, 0, 0.1, 2, "channel", &err), TOBI_INVALID);
+    assert_int_equal(tobi_mesh_make_vessel(&m, 0, 0.1, shut, 2, "channel", &err), TOBI_INVALID);
     if (!strstr(err.text, "A vessel is open at its top alone, also in 2-D")) fail_msg("%s", err.text);
     tobi_mesh_free(&m);
 }
@@ -356,6 +384,7 @@ int main(void)
              "\"max\": [1, 1, 1] } }");
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_channel), cmocka_unit_test(test_walls),       cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_open_sides),
         cmocka_unit_test(test_compartments), cmocka_unit_test(test_bulkheads),
         cmocka_unit_test(test_mistakes),
         cmocka_unit_test(test_solid_inside), cmocka_unit_test(test_walls_on_cells),
