@@ -517,7 +517,7 @@ typedef struct tobi_step_info {
     double  weight;               /* N, |m g| of all fluid                                            */
     double  kinetic_energy, potential_energy;        /* J; potential against domain_min               */
     double  elastic_energy;       /* J, stored in solids and compressed liquids of mlsmpm             */
-    double  work_bodies;          /* J, done by bodies on the solids of mlsmpm so far                 */
+    double  work_bodies;          /* J, done by bodies and fluids on the solids of mlsmpm so far      */
     double  energy_lost;          /* J, gone from the solids so far; the next seven are its parts     */
     double  transfer_dissipation; /* J, by the way to the grid and back; if mlsmpm measures it        */
     double  plastic_work;         /* J, by plastic flow and viscosity; if measured                    */

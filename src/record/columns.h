@@ -49,7 +49,7 @@
       "In gravity, against the lower corner of the domain.") \
     H("elastic_energy", "J", real, i->elastic_energy, "Stored in solids and compressed liquids of mlsmpm.") \
     H("work_bodies", "J", real, i->work_bodies, \
-      "Done by bodies on the solids since the start; positive: the solids gain.") \
+      "Done by bodies and fluids on the solids since the start; positive: the solids gain.") \
     H("energy_lost", "J", real, i->energy_lost, \
       "Lost by the solids since the start; the seven columns that follow are its parts.") \
     H("transfer_dissipation", "J", real, i->transfer_dissipation, \
