@@ -70,7 +70,7 @@ typedef struct tobi_dfsph_def {
     double support;                   /* support radius in spacings, 2 to 4; 0 = automatic            */
     double density_tolerance;         /* 1, mean |density error| at which the density solve may stop  */
     double divergence_tolerance;      /* 1, mean |div v| dt at which the divergence solve may stop    */
-    double pressure_tolerance;        /* 1, relative pressure residual both solves must also reach    */
+    double pressure_tolerance;        /* 1, relative residual the divergence solve must reach as well */
     int    density_iterations_min, density_iterations_max;
     int    divergence_iterations_min, divergence_iterations_max;
     double filter;                    /* 1, share of the particle-scale motion taken out per step     */

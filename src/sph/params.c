@@ -25,7 +25,7 @@ static const tobi_param dfsph_rows[] = {
       .doc = "Mean |div v| times the time step at which the divergence solve may stop." },
     { .key = "pressure_tolerance", REAL, AT(tobi_dfsph_def, pressure_tolerance), .def = { 0.05 },
       RANGE(1e-9, 1), .unit = "1",
-      .doc = "Relative pressure residual that both solves must reach as well." },
+      .doc = "Relative pressure residual that the divergence solve must reach as well." },
     { .key = "density_iterations_min", INT, AT(tobi_dfsph_def, density_iterations_min),
       .def = { 1 },
       RANGE(0, 1000000), .unit = "1", .doc = "Fewest iterations of the density solve in a step." },
