@@ -15,53 +15,107 @@ static const char head[] =
     "\n"
     "[日本語](tables.ja.md)\n"
     "\n"
-    "## Files of a run\n"
+    "## Which column\n"
     "\n"
-    "| file | content |\n"
-    "|---|---|\n"
-    "| `fluid.pvd`, `bodies.pvd` | particles of the fluid (or solids) and of the "
-    "bodies over time; `.vtu` in folders beside |\n"
-    "| `all.pvd` | everything in one list with one time base |\n"
-    "| `grid.pvd` | nodes of the grid of mlsmpm, with `output.grid` |\n"
-    "| `surface.pvd` | the surface of fluids and pieces of solids, with `output.surface.write` |\n"
-    "| `BODY.pvd` | the moving surface of each body: `.vtp` and `.stl` in `surfaces/` |\n"
-    "| `BODY_tractions.pvd` | pressure and shear on it, in `tractions/`, with `output.tractions` |\n"
-    "| `frames/` | a picture per output, with `--frames` |\n"
-    "| `ply/`, `obj/` | positions of the fluid, surfaces of the bodies, with `output.ply`, `output.obj` |\n"
-    "| `history.csv`, `bodies.csv`, `solids.csv`, `probes.csv` | the tables below |\n"
-    "| `movie.mp4` | those pictures as a movie, after `tobiuo movie` |\n"
-    "| `report.html` | one page: what to trust, pictures, plots, tables, times; after `tobiuo report` |\n"
-    "| `plots/` | the tables as pictures, after `tobiuo plot` |\n"
-    "| `checkpoints/` | what `tobiuo resume` goes on from |\n"
-    "| `resolved.json` | the scene with every default explicit; gives the same bits again |\n"
-    "| `summary.json` | totals; of solids the number of `pieces`, and mass (kg), volume (m3), "
-    "centre (m) of each |\n"
-    "\n"
-    "## The tables\n"
-    "\n"
-    "A run leaves its tables in its folder. They are CSV files: a row of names, then numbers\n"
-    "with a decimal point and commas between.\n"
-    "\n"
-    "| file | a row for | in the folder |\n"
+    "| to know | file | column |\n"
     "|---|---|---|\n"
-    "| `history.csv` | each output | always |\n"
-    "| `bodies.csv` | each output and body | where the scene has bodies |\n"
-    "| `solids.csv` | each output and solid | where the scene has solids beside fluids |\n"
-    "| `lines.csv` | each step, or each `output.probe_interval`: `NAME_tension [N]`, "
-    "`NAME_distance [m]` | where the scene has lines |\n"
-    "| `joints.csv` | the same: `NAME_force_x [N]` ..., `NAME_moment_x [N m]` ..., "
-    "`NAME_angle [degrees]`, `NAME_gap [m]` | where the scene has joints |\n"
-    "| `probes.csv` | each step, or each `output.probe_interval` | where the scene has probes |\n"
+    "| force of liquids and solids on a body | `bodies.csv` | `mean_pressure_force_x`, `_y`, `_z` and "
+    "`mean_viscous_force_x`, `_y`, `_z` |\n"
+    "| where a body is, how it is turned | `bodies.csv` | `position_x`, `_y`, `_z`; `orientation_w`, "
+    "`_x`, `_y`, `_z` |\n"
+    "| force on a knife's edge | `bodies.csv` | `mean_edge_force_x`, `_y`, `_z` |\n"
+    "| force of the liquids on a soft solid | `solids.csv` | `mean_liquid_force_x`, `_y`, `_z` |\n"
+    "| pressure, level, flow at a sensor | `probes.csv` | `NAME_pressure`, `NAME_level`, `NAME_flow` |\n"
+    "| tension of a line, force in a joint | `lines.csv`, `joints.csv` | `NAME_tension`; "
+    "`NAME_force_x`, `_y`, `_z` |\n"
+    "| force of the liquids on the sides of the domain | `history.csv` | `wall_force_x`, `_y`, `_z` |\n"
+    "| energy | `history.csv` | `kinetic_energy`, `potential_energy`, `elastic_energy` |\n"
+    "| liquid that came in and went out | `history.csv` | `mass_in`, `mass_out`, `mass_held` |\n"
+    "| pieces of a solid that was cut | `history.csv` | `pieces`; each one: `piece_list` in "
+    "`summary.json` |\n"
+    "| whether to trust the run | `history.csv` | `density_error_mean`, `unconverged_steps`, "
+    "`surface_share` |\n"
+    "\n"
+    "`tobiuo plot DIR` draws the tables. `tobiuo describe COLUMN` prints the meaning of a column. To "
+    "read\n"
+    "a table in Python, after `tobiuo run scenes/ball_drop`:\n"
+    "\n"
+    "```\n"
+    "import csv\n"
+    "for row in csv.DictReader(open(\"out/ball_drop/bodies.csv\")):\n"
+    "    print(row[\"time\"], row[\"name\"], float(row[\"position_z\"]))\n"
+    "```\n"
     "\n"
     "- Units are SI. In 2-D masses, forces, torques and energies are per metre of depth.\n"
     "- Vectors are in axes of the domain. A force is positive towards the higher coordinate.\n"
-    "- Forces and torques in `bodies.csv` act on the body, torques about its centre of mass.\n"
-    "- `solids.csv` has the force of the fluids on each solid. What holds the solid, `clamped_to`, is in\n"
-    "  `bodies.csv`: the force on a body is that of the fluids and that of the solids on it.\n"
-    "- Columns `mean_...` are means over the time since the last output. Plot these. Other values are of\n"
+    "- Columns `mean_...` are means over the time since the last output. Plot these. The others are of\n"
     "  the last step, and scatter from step to step.\n"
-    "- Energies and works of solids are of `mlsmpm`; of the other methods they are 0.\n"
-    "- `tobiuo plot DIR` draws the tables; `tobiuo describe COLUMN` tells what a column is.\n";
+    "- Forces in `bodies.csv` are those of the liquids on the body and of the solids that touch it or are\n"
+    "  `clamped_to` it. Torques are about its centre of mass.\n"
+    "- Columns `elastic_energy` to `side_work` are of the method `mlsmpm`. Without it they are 0.\n"
+    "\n"
+    "## Files of a run\n"
+    "\n"
+    "| file | content | written |\n"
+    "|---|---|---|\n"
+    "| `history.csv` | the whole run, a row per output | always |\n"
+    "| `bodies.csv` | each body, a row per output and body | with bodies |\n"
+    "| `solids.csv` | each solid, a row per output and solid | with solids beside fluids |\n"
+    "| `probes.csv` | sensors, a row per step or `output.probe_interval` | with probes |\n"
+    "| `lines.csv`, `joints.csv` | lines and joints, as many rows as `probes.csv` | with lines, with "
+    "joints |\n"
+    "| `fluid.pvd` | particles of the fluids and solids over time; `.vtu` in `fluid/` | with "
+    "fluids or solids |\n"
+    "| `bodies.pvd` | particles of the bodies over time; `.vtu` in `bodies/` | with bodies |\n"
+    "| `all.pvd` | all of these in one list | always |\n"
+    "| `BODY.pvd`, `line_LINE.pvd` | the surface of each body, each line; `.vtp` and `.stl` in "
+    "`surfaces/` | unless `output.surfaces` is false |\n"
+    "| `BODY_tractions.pvd` | pressure and shear on a body; `.vtp` in `tractions/` | with "
+    "`output.tractions` |\n"
+    "| `surface.pvd` | the surface of the liquids and of each piece; `.vtp` in `surface/` | with "
+    "`output.surface.write`, or by `tobiuo surface` |\n"
+    "| `grid.pvd` | nodes of the grid of `mlsmpm`; in `grid/` | with `output.grid` |\n"
+    "| `frames/` | a picture per output, `frame_000000.png`, and one of each view | with `--frames`, "
+    "or by `tobiuo movie` |\n"
+    "| `ply/`, `obj/` | positions of the fluid, surfaces of the bodies | with `output.ply`, "
+    "`output.obj` |\n"
+    "| `checkpoints/` | the state, for `tobiuo resume` | at the end, and every "
+    "`output.checkpoint_interval` |\n"
+    "| `resolved.json` | the scene with every default | always |\n"
+    "| `summary.json` | see below | at the end |\n"
+    "| `plots/`, `movie.mp4`, `picture.png`, `report.html` | curves, movie, picture, report | by "
+    "`tobiuo plot`, `movie`, `picture`, `report` |\n"
+    "\n"
+    "| key of `summary.json` | meaning |\n"
+    "|---|---|\n"
+    "| `outcome` | `complete`, `interrupted`, `diverged`, `stalled` or `failed` |\n"
+    "| `steps`, `time`, `wall_s`, `stages_s` | steps, simulated time (s), seconds that the run took, "
+    "seconds of each stage |\n"
+    "| `sensors` | least and largest value of each column of `probes.csv`, with their times (s) |\n"
+    "| `pieces`, `piece_list` | number of pieces of the solids; mass (kg), volume (m3), centre (m) of "
+    "each |\n"
+    "| `state_hash` | equal for runs that end with the same bits |\n"
+    "\n"
+    "[ParaView](paraview.md) opens `.pvd`. The fields of the particles are those of `output.fields`.\n";
+
+static const char sensors[] =
+    "\n## probes.csv\n\n"
+    "The first column is `time [s]`. The others begin with the name P of the [sensor](tanks.md#sensors),\n"
+    "and end with the unit: `P_pressure [Pa]`. A cell is empty where a sensor with a `rate` of its own is\n"
+    "not due.\n\n"
+    "| kind | column | unit | meaning |\n|---|---|---|---|\n";
+
+/* Its names are made of those of the scene, as the writers in record/ have it. */
+static const char joined[] =
+    "\n## lines.csv and joints.csv\n\n"
+    "The first column is `time [s]`. The others begin with the name of the line or joint.\n\n"
+    "| column | unit | meaning |\n|---|---|---|\n"
+    "| `LINE_tension` | N | Force along the [line](lines.md); positive pulls. |\n"
+    "| `LINE_distance` | m | Distance of its ends. |\n"
+    "| `JOINT_force_x`, `_y`, `_z` | N | Force of the [joint](joints.md) on its `body`. |\n"
+    "| `JOINT_moment_x`, `_y`, `_z` | N m | Moment of the joint on its `body`. |\n"
+    "| `JOINT_angle` | degrees | Angle of `body` against `to_body` since the start. |\n"
+    "| `JOINT_gap` | m | Distance of the two points that the joint holds together. |\n";
 
 static const struct { const char *topic, *file, *doc; tobi_table table; } tables[] = {
     { "history", "history.csv", "The columns of history.csv: a row per output.", TOBI_TABLE_HISTORY },
@@ -134,20 +188,26 @@ const char *tobi_tables_topic(int index, const char **doc)
     return names[index];
 }
 
-/* Components of a vector share a row: `position_x`, `_y`, `_z`. */
-static void write_rows(FILE *out, tobi_table table)
+/* Components of a vector share a row: `position_x`, `_y`, `_z`. Of sensors, the kind stands in front. */
+static void write_rows(FILE *out, tobi_table table, const char *kind)
 {
     const tobi_column *c, *next;
-    fputs("| column | unit | meaning |\n|---|---|---|\n", out);
     for (int i = 0; (c = tobi_run_column(table, i)); i++) {
         const char *doc = c->doc;
-        fprintf(out, "| `%s`", c->name);
+        if (kind) fprintf(out, "| `%s` ", kind);
+        fprintf(out, "| `%s%s`", kind ? "P_" : "", c->name);
         while ((next = tobi_run_column(table, i + 1)) && !*next->doc) {
             fprintf(out, ", `%s`", strrchr(next->name, '_'));
             i++;
         }
         fprintf(out, " | %s | %s |\n", c->unit, doc);
     }
+}
+
+static void write_table(FILE *out, const char *file, tobi_table table)
+{
+    fprintf(out, "\n## %s\n\n| column | unit | meaning |\n|---|---|---|\n", file);
+    write_rows(out, table, NULL);
 }
 
 char *tobi_tables_manual(void)
@@ -158,19 +218,12 @@ char *tobi_tables_manual(void)
     FILE *out = open_memstream(&text, &size);
     if (!out) return NULL;
     fputs(head, out);
-    fputs("\n## history.csv\n\n", out);
-    write_rows(out, TOBI_TABLE_HISTORY);
-    fputs("\n## bodies.csv\n\n", out);
-    write_rows(out, TOBI_TABLE_BODIES);
-    fputs("\n## solids.csv\n\n", out);
-    write_rows(out, TOBI_TABLE_SOLIDS);
-    fputs("\n## probes.csv\n\nThe header names each column with its unit, `P_pressure [Pa]`. The first is\n"
-          "`time [s]`. Where a sensor with a rate of its own is not due, its cells are empty.\n"
-          "`summary.json` has the extremes of each column (`sensors`).\n", out);
-    for (int k = 0; k < 6; k++) {
-        fprintf(out, "\nFor each probe P of kind %s, after P and `_`:\n\n", kinds[k]);
-        write_rows(out, (tobi_table)(TOBI_TABLE_POINT + k));
-    }
+    write_table(out, "history.csv", TOBI_TABLE_HISTORY);
+    write_table(out, "bodies.csv", TOBI_TABLE_BODIES);
+    write_table(out, "solids.csv", TOBI_TABLE_SOLIDS);
+    fputs(sensors, out);
+    for (int k = 0; k < 6; k++) write_rows(out, (tobi_table)(TOBI_TABLE_POINT + k), kinds[k]);
+    fputs(joined, out);
     int failed = ferror(out);
     if (fclose(out) == 0 && !failed) return text;
     free(text);
