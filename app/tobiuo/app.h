@@ -126,6 +126,7 @@ error_t parse_scene_option(struct argp_state *state, int key, const char *value,
 
 /* drive.c: steps a run to its end with progress and Ctrl-C. */
 typedef struct drive_options {
+    tobi_scene *scene;    /* for the places of what its run refuses */
     const char *dir;      /* where the results go, for messages  */
     double end;           /* s                                   */
     int quiet;            /* 1: no progress line                 */

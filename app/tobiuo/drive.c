@@ -82,9 +82,10 @@ static int end_run(const tobi_world *world, tobi_run *run, const drive_options *
 /* The state at which it ended has an output too, for who wants to see why, if it is one: not after a disk or
    memory failed, and not of numbers that are none. */
 static int end_failed_run(const tobi_world *world, tobi_run *run, const drive_options *o, tobi_status status,
-                          const tobi_error *err)
+                          tobi_error *err)
 {
     tobi_error more;
+    tobi_scene_place_error(o->scene, err);
     complain("%s", err->text);
     if (status != TOBI_NO_MEMORY && status != TOBI_IO && isfinite(tobi_world_info(world)->speed_max))
         tobi_run_output_end(run, &more);

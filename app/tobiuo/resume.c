@@ -42,7 +42,7 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
         code = complain("%s", err.text);
     } else {
         double end = o->until > 0.0 ? o->until : tobi_scene_world_def(scene)->end_time;
-        drive_options d = { .dir = o->dir, .end = end, .quiet = o->quiet };
+        drive_options d = { .scene = scene, .dir = o->dir, .end = end, .quiet = o->quiet };
         if (!o->quiet) fprintf(stderr, "tobiuo: %s\n", tobi_run_note(run));
         if (*tobi_run_losses(run)) complain("results in %s: %s", o->dir, tobi_run_losses(run));
         code = drive(world, run, &d);

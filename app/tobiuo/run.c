@@ -106,7 +106,8 @@ static int record(tobi_scene *scene, tobi_world *world, const run_options *o, co
     if (!o->quiet) print_notes(world, stderr, "tobiuo: note: ");
     tobi_scene_place_error(scene, &err);
     if (status != TOBI_OK) return complain("%s", err.text);
-    drive_options d = { .dir = dir, .end = tobi_scene_world_def(scene)->end_time, .quiet = o->quiet };
+    drive_options d = { .scene = scene, .dir = dir, .end = tobi_scene_world_def(scene)->end_time,
+                        .quiet = o->quiet };
     int code = o->window ? drive_with_window(world, run, &d, scene, o->keys) : drive(world, run, &d);
     tobi_run_free(run);
     return code;

@@ -42,7 +42,7 @@ typedef struct tobi_error {
     tobi_status status;
     char text[2048];
     char key[64];          /* of the definition that a call refuses, as "fill[0].level"; "" if none is known.
-                              From tobi_world_start it begins at the scene: "fluids[0].fill[0].level" */
+                              From a start and a step it begins at the scene: "fluids[0].fill[0].level" */
 } tobi_error;
 
 #ifdef __cplusplus

@@ -71,6 +71,25 @@ static tobi_status look_ahead(tobi_world *w, double max_dt, double *dt, tobi_err
     }
 }
 
+/* The solid whose material allows the shortest step. */
+static int find_stiffest(const tobi_system *s)
+{
+    int stiffest = 0;
+    for (int k = 1; k < s->solid_count; k++)
+        if (s->method->stable_dt(s, k, 0) < s->method->stable_dt(s, stiffest, 0)) stiffest = k;
+    return stiffest;
+}
+
+static tobi_status check_substeps(const tobi_system *s, int64_t count, double step, tobi_error *err)
+{
+    if (count <= SUBSTEP_LIMIT) return TOBI_OK;
+    const int k = find_stiffest(s);
+    tobi_fail(err, TOBI_INVALID, "solid '%s' needs %lld substeps in a step of %.3g s, allowed are %d; solids "
+              "less stiff, or a shorter time_step_max, need fewer", s->solids[k].name, (long long)count, step,
+              SUBSTEP_LIMIT);
+    return tobi_at_key(err, TOBI_INVALID, "solids[%d]", k);
+}
+
 /* The step of all, and the substeps that each system takes in it. */
 static tobi_status choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI_SYSTEM_LIMIT],
                              tobi_error *err)
@@ -89,10 +108,7 @@ static tobi_status choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI
     for (int k = 0; k < w->system_count; k++) {
         substeps[k] = k > 0 ? (int64_t)fmax(ceil(s->dt/stable[k]*(1 - 1e-9)), 1) : 1;
         w->system[k].dt = s->dt/(double)substeps[k];
-        if (substeps[k] > SUBSTEP_LIMIT)
-            return tobi_fail(err, TOBI_INVALID, "the solids need %lld substeps in a step of %.3g s, allowed "
-                             "are %d; solids less stiff, or a shorter time_step_max, need fewer",
-                             (long long)substeps[k], s->dt, SUBSTEP_LIMIT);
+        TOBI_TRY(check_substeps(&w->system[k], substeps[k], s->dt, err));
     }
     return TOBI_OK;
 }
@@ -244,7 +260,7 @@ tobi_status tobi_step_take(tobi_world *w, double max_dt, tobi_error *err)
     w->sim.changed = 0;
     const tobi_status status = take_step(w, max_dt, &w->failure);
     if (status == TOBI_OK) return TOBI_OK;
-    tobi_fail(err, status, "%s", w->failure.text);
+    if (err) *err = w->failure;
     if (status == TOBI_STOPPED || !w->sim.changed) w->failure.status = TOBI_OK;
     if (status == TOBI_STOPPED) take_back(w, keep.dt);
     else if (!w->sim.changed) put_back(w, &keep);

@@ -32,6 +32,8 @@ for method in dfsph isph; do
     check "$method: the same forces after a resume" cmp whole/solids.csv parts/solids.csv
 done
 check "describe" grep -q "Of the fluids on the solid" <("$program" describe mean_liquid_force_x; "$program" describe liquid_force_x)
+sed 's/1e5,$/1e15,/' pool.json > stiff.json
+expect 1 "stiff.json:5:15: solids[1]: solid 'dry' needs 2" run stiff.json --out stiff --quiet
 cat > jelly.json <<'END2'
 { "dimension": 2, "method": "mlsmpm", "domain": { "min": [0, 0], "max": [0.4, 0.3] }, "spacing": 0.02, "end_time": 0.02,
   "solids": [ { "name": "jelly", "youngs_modulus": 1e5, "fill": [ { "box": { "min": [0.1, 0.1], "max": [0.2, 0.2] } } ] } ] }
