@@ -3,6 +3,8 @@
 #include "app.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 typedef struct resume_options {
@@ -29,6 +31,26 @@ static error_t parse(int key, char *value, struct argp_state *state)
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
     return 0;
+}
+
+static int is_newer(const struct timespec *a, const struct timespec *b)
+{
+    return a->tv_sec != b->tv_sec ? a->tv_sec > b->tv_sec : a->tv_nsec > b->tv_nsec;
+}
+
+/* What changed in a motion or a table holds from here on, and what has been computed does not follow it.
+   resolved.json is written once, when a run begins. */
+static void say_changed_files(const tobi_scene *scene, const char *resolved)
+{
+    struct stat then, now;
+    const char *path;
+    if (stat(resolved, &then) != 0) return;
+    for (int k = 0; (path = tobi_scene_file(scene, k)); k++) {
+        int told = 0;
+        for (int n = 0; n < k; n++) told |= strcmp(tobi_scene_file(scene, n), path) == 0;
+        if (told || stat(path, &now) != 0 || !is_newer(&now.st_mtim, &then.st_mtim)) continue;
+        complain("%s has changed since the run began; the run goes on with it as it is now", path);
+    }
 }
 
 static int resume_scene(tobi_scene *scene, const resume_options *o)
@@ -66,6 +88,7 @@ int tobiuo_resume(int argc, char **argv)
         return complain_run(o.dir, "there is no run to resume (no resolved.json)");
     }
     tobi_scene *scene = load_scene(path, &o.set);
+    if (scene) say_changed_files(scene, path);
     int code = scene ? resume_scene(scene, &o) : EXIT_ERROR;
     tobi_scene_free(scene);
     free(path);

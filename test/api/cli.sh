@@ -410,9 +410,14 @@ check "resolved.json resolves to itself" diff <(sed '/threads/d' one/resolved.js
 $python make_scene.py long.json 0.2 box.obj
 expect 0 "" run long.json --quiet --out whole
 expect 0 "" run long.json --quiet --out halves --until 0.1
-cp swing.lua good.lua && echo 'table.insert({}, 2^53, 1)' > swing.lua
+cp -p swing.lua good.lua && echo 'table.insert({}, 2^53, 1)' > swing.lua
 expect 1 "swing.lua: endless loop? stopped after 3 s of processor time, inside one call" resume halves
 mv good.lua swing.lua
+touch swing.lua
+expect 0 "swing.lua has changed since the run began; the run goes on with it as it is now" resume halves --quiet \
+    --until 0.15
+check "a file that did not change is not named" test "$(grep -c . err.txt)" = 1
+touch -r box.obj swing.lua
 expect 0 "" resume halves --quiet --until 0.2
 check "run = run + resume" same_results whole halves
 check "run = run + resume, state" same_hash whole halves
