@@ -362,6 +362,9 @@ check "import tells what became of it" grep -q "10000 times water" out.txt
 expect 1 "new.json exists" import "$old/rigid_blocks.json" --out new.json
 expect 0 "" import "$old/rigid_blocks.json" --out new.json --force --quiet
 mkfifo fifo && ln -s new.json link      # like a device: what is no plain file is never replaced
+cp "$old/rigid_blocks.json" own.json
+expect 1 "own.json: is what the scene is read from; choose another name" import own.json --out ./own.json --force
+check "the old scene is whole" cmp own.json "$old/rigid_blocks.json"
 expect 1 "it is a FIFO" import "$old/rigid_blocks.json" --out fifo --force --quiet
 expect 1 "it is a symbolic link" import "$old/rigid_blocks.json" --out link --force --quiet
 expect 1 "native scene already" import new.json --out newer.json

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char *const matter[] = { "fluids", "solids" };
@@ -117,6 +118,24 @@ static tobi_status write_scene(const tobi_scene *scene, const char *from, const 
     return status;
 }
 
+static int is_same_file(const char *a, const char *b)
+{
+    struct stat one, other;
+    return a && stat(a, &one) == 0 && stat(b, &other) == 0 && one.st_dev == other.st_dev &&
+           one.st_ino == other.st_ino;
+}
+
+/* With --force too. */
+static tobi_status check_sources(const tobi_scene *scene, const char *old_path, const char *new_path,
+                                 tobi_error *err)
+{
+    const char *file;
+    int same = is_same_file(old_path, new_path);
+    for (int k = 0; (file = tobi_scene_file(scene, k)); k++) same |= is_same_file(file, new_path);
+    if (!same) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "%s: is what the scene is read from; choose another name", new_path);
+}
+
 tobi_status tobi_scene_import(const char *old_path, const char *new_path, int force, char **table,
                               tobi_report **report, tobi_error *err)
 {
@@ -129,7 +148,8 @@ tobi_status tobi_scene_import(const char *old_path, const char *new_path, int fo
         return tobi_fail(err, TOBI_INVALID, "%s exists; nothing was changed (choose another name, or "
                          "--force to replace it)", new_path);
     TOBI_TRY(tobi_scene_load_foreign(old_path, &scene, report, err));
-    const tobi_status status = write_scene(scene, old_path, new_path, table, err);
+    tobi_status status = check_sources(scene, old_path, new_path, err);
+    if (status == TOBI_OK) status = write_scene(scene, old_path, new_path, table, err);
     if (status != TOBI_OK) {
         free(*table);
         *table = NULL;
