@@ -106,6 +106,7 @@ struct tobi_run {
     int lock;                             /* descriptor of dir, locked               */
     pthread_mutex_t dir_lock;             /* of the descriptor, and of making folders */
     char *resolved;                       /* text of resolved.json, NULL = there is none */
+    int64_t history_missing;              /* rows that somebody cut out of history.csv, at a resume */
     char note[1024], losses[1536];        /* texts for the user                      */
     bool lost_dir;                        /* dir was deleted and made again          */
     tobi_record_field field[TOBI_RECORD_FIELD_LIMIT];
@@ -180,6 +181,8 @@ void tobi_trouble_free(tobi_run *run);
 /* record/tables.c: history.csv, bodies.csv and probes.csv. */
 /* Opens them: new, or continued after the rows up to the last output, or up to the world's time. */
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err);
+/* Of a run that is resumed, once they are open: run->history_missing. */
+void tobi_tables_count_missing(tobi_run *run);
 /* The rows of an output: made, and written. */
 tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);

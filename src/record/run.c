@@ -103,6 +103,9 @@ static void tell_losses(tobi_run *run)
     for (size_t k = 0; k < sizeof tables/sizeof *tables; k++)
         if (tables[k].csv && tobi_csv_has_lost(tables[k].csv))
             at += snprintf(at, (size_t)(end - at), "%s was deleted and begins anew; ", tables[k].name);
+    if (run->history_missing > 0)
+        at += snprintf(at, (size_t)(end - at), "history.csv lacks rows of earlier outputs: %lld; ",
+                       (long long)run->history_missing);
     at += tobi_trouble_write(run, at, (size_t)(end - at));
     const int64_t missing = run->missing - run->trouble[TOBI_KIND_PARTICLES].files -
                             run->trouble[TOBI_KIND_SURFACES].files;      /* said already */
@@ -174,6 +177,7 @@ static tobi_status resume(tobi_run *run, tobi_error *err)
     }
     TOBI_TRY(tobi_series_prepare(run, err));
     TOBI_TRY(tobi_tables_open(run, true, err));
+    tobi_tables_count_missing(run);
     run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
     TOBI_TRY(tobi_series_lists(run, err));
     tell_losses(run);

@@ -1,5 +1,6 @@
 /* history.csv, bodies.csv and solids.csv (probes.csv: record/probes.c): the columns are lists
    (record/columns.h), so that header, row and what is said of them cannot disagree. */
+#include "base/plain.h"
 #include "record/record.h"
 #include "record/columns.h"
 #include "world/world.h"
@@ -118,6 +119,24 @@ const tobi_column *tobi_run_column(tobi_table table, int index)
 {
     if (table < 0 || table >= (int)(sizeof tables/sizeof *tables)) return NULL;
     return index >= 0 && index < tables[table].count ? &tables[table].columns[index] : NULL;
+}
+
+/* history.csv has a row per output. */
+static int64_t count_missing(const tobi_run *run)
+{
+    char *path = tobi_record_path(run->dir, "history.csv"), *text = NULL;
+    size_t bytes;
+    int64_t rows = -1;      /* the header */
+    if (path && tobi_plain_read(path, "table", 0, &text, &bytes, NULL) == TOBI_OK)
+        for (size_t k = 0; k < bytes; k++) rows += text[k] == '\n';
+    free(text);
+    free(path);
+    return rows >= 0 ? run->outputs - rows : 0;
+}
+
+void tobi_tables_count_missing(tobi_run *run)
+{
+    run->history_missing = tobi_csv_has_lost(run->history) ? 0 : count_missing(run);
 }
 
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
