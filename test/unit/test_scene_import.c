@@ -485,6 +485,10 @@ static void a_written_scene_is_the_same(void **state)
     assert_int_equal(tobi_scene_import(names[0], "/nowhere/new.json", 1, &table, NULL, &err), TOBI_IO);
     assert_null(table);
     unlink(path);
+    assert_int_equal(symlink(names[0], path), 0);      /* which is never written through */
+    assert_int_equal(tobi_scene_import(names[0], path, 1, &table, NULL, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "is what the scene is read from; choose another name"));
+    unlink(path);
     rmdir(folder);
 }
 
