@@ -59,8 +59,8 @@ TOBI_API const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene);
    checked. */
 TOBI_API const tobi_reference_def *tobi_scene_reference(const tobi_scene *scene, int index);
 
-/* The absolute path of a file that the scene is computed from or drawn with: meshes, pictures, scripts, tables
-   of motions, inlets and gravity. NULL past the end; a file named twice comes twice. Owned by the scene. */
+/* The absolute path of a file that the scene is computed from or drawn with: a mesh, picture, script or table
+   (motions, inlets, gravity). NULL past the end; a file named twice comes twice. Owned by the scene. */
 TOBI_API const char *tobi_scene_file(const tobi_scene *scene, int index);
 
 /* Scenes of the Taichi program (SPH_Taichi and its relatives; they have a key `Configuration`) are loaded
