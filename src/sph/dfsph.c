@@ -110,7 +110,6 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the dfsph state");
     m->def = *(const tobi_dfsph_def *)s->def;
     m->common.past_edges = 1;
-    m->def.still_water &= !s->sim->soft.solids;      /* the solids' points know nothing of it */
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     if (sph_has_openings(s)) m->def.still_water = 0;       /* the level of the start is none for long */
     return TOBI_OK;

@@ -77,7 +77,9 @@ static void add_reference(tobi_system *s)
 
 void sph_add_hydrostatic(tobi_system *s)
 {
-    double held = s->smoothing.volume*(double)s->particles.count;
+    double held = s->smoothing.volume*(double)s->particles.count, solids[3];
+    sph_soft_still_sum(s, solids);
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] -= solids[a];
     if (sph_of(s)->reference.push > 0) add_reference(s);
     for (int a = 0; a < s->box.dimension; a++) {
         double push = s->fluid[0].density*(s->sim->def.gravity[a] - s->gravity[a]);

@@ -60,15 +60,16 @@ static double find_middle(const int64_t n[DROPS], double scale)
     return (k + 0.5)/scale;
 }
 
-/* The depth of the surface but for the few deepest particles; *middle: the median of all, m. */
-static double find_low(const tobi_system *s, double *middle)
+/* The depth of all but the few deepest of `count` places, 0 in those that do not count; *middle: the median
+   of all, m. */
+static double find_depth(const tobi_system *s, const float *depth, int64_t count, double deepest,
+                         double *middle)
 {
-    const sph_state *state = sph_of(s);
-    int64_t n[DROPS] = {0}, count = s->particles.count;
-    const double all = 1.0001*state->lowest, range = fmin(all, DROPS*DROP_MOST*s->smoothing.spacing);
+    int64_t n[DROPS] = {0};
+    const double all = 1.0001*deepest, range = fmin(all, DROPS*DROP_MOST*s->smoothing.spacing);
     const double top = all - range, scale = DROPS/range;
-    const counting view = { sph_fields_of(&s->particles)->surface_depth, top, scale, n };
-    if (!(state->lowest > 0)) return 0;
+    const counting view = { depth, top, scale, n };
+    if (!(deepest > 0)) return 0;
     tobi_loop(s->sim->exec.threads, count, 0, count_drops, &view);
     *middle = top + find_middle(n, scale);
     double few = 1 + 0.02*(s->box.dimension == 3 ? cbrt((double)count*(double)count) : sqrt((double)count));
@@ -77,7 +78,20 @@ static double find_low(const tobi_system *s, double *middle)
     return top + k/scale;
 }
 
-double sph_reference_low(tobi_system *s) { return find_low(s, &sph_of(s)->middle); }
+static double find_low(const tobi_system *s, double *middle)
+{
+    return find_depth(s, sph_fields_of(&s->particles)->surface_depth, s->particles.count, sph_of(s)->lowest,
+                      middle);
+}
+
+double sph_reference_surface(tobi_system *s) { return find_low(s, &sph_of(s)->middle); }
+
+double sph_reference_low(tobi_system *s)
+{
+    double middle;
+    const double low = sph_reference_surface(s), dry = low > 0 ? sph_soft_find_dry(s, low) : 0;
+    return fmax(low, find_depth(s, sph_of(s)->soft.dry, s->sim->soft.count, dry, &middle));
+}
 
 /* --- surfaces that open in the depth --------------------------------------------------------------- */
 

@@ -9,6 +9,8 @@ void sph_reference_set(tobi_system *s, double low);
 /* Drop of the free surface, m, but for the few deepest of its particles, which disorder may have made; 0
    where it has no more. After sph_measure_density, which leaves the depths in particles.surface_depth. Leaves
    their median in the state. */
+double sph_reference_surface(tobi_system *s);
+/* The same, or of the air beside soft solids where that is deeper (sph/soft_still.c). */
 double sph_reference_low(tobi_system *s);
 /* Drop of those parts of it that lie where still water presses, but from which the air above is to be seen,
    as under a gate that is drawn up; 0 without. Leaves these parts alone in particles.surface_depth; nothing

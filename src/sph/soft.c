@@ -197,6 +197,7 @@ tobi_status sph_soft_find(tobi_system *s, tobi_error *err)
     if (is_alone(s)) return TOBI_OK;
     TOBI_TRY(soft->solids->method->points(soft->solids, err));
     TOBI_TRY(grow(&q->found, &q->found_room, soft->count, err));
+    TOBI_TRY(grow(&q->dry, &q->dry_room, soft->count, err));
     TOBI_TRY(grow(&q->last, &q->last_room, s->particles.count, err));
     TOBI_TRY(tobi_exec_reserve(&s->sim->exec, soft->count, err));
     tobi_launch(&s->sim->exec, TOBI_HOST(count_links, 0, 1), s, 0, soft->count, t);
@@ -206,7 +207,7 @@ tobi_status sph_soft_find(tobi_system *s, tobi_error *err)
     if (q->points > 0) memset(q->known, 0, (size_t)q->points*sizeof *q->known);
     if (sph_of(s)->mirrors) tobi_loop(s->sim->exec.threads, q->points, 0, begin_mirrors, s);
     chain_links(s);
-    return TOBI_OK;
+    return sph_of(s)->mirrors ? TOBI_OK : sph_soft_mark(s, err);
 }
 
 /* The share of the kernel of which sph_wall_density makes this sum over a lattice: its inverse. */
@@ -248,9 +249,12 @@ static void find_force(const tobi_system *s, const sph_soft_link *l, int hydrost
     const tobi_fluid *fluid = &s->fluid[s->particles.fluid[l->particle]];
     const double nu = q->size[b].grip*fluid->viscosity/fluid->density;
     const float *u = &s->particles.velocity[l->particle].x, *w = &q->velocity[b].x;
+    const tobi_reference *still = &sph_of(s)->reference;
+    const double held = still->push*tobi_reference_share(still, &q->position[b].x)/fluid->density;
     double r[3], fall = 0;
     subtract(s, l->particle, &q->position[b].x, r);
-    for (int a = 0; a < s->box.dimension && hydrostatic; a++) fall -= s->gravity[a]*r[a];
+    for (int a = 0; a < s->box.dimension && hydrostatic; a++)
+        fall -= (s->gravity[a] - held*still->down[a])*r[a];
     for (int a = 0; a < 3; a++)
         out[a] = -fall*l->push[a] + 4*nu*l->rate*((double)w[a] - u[a]);
 }
@@ -302,8 +306,11 @@ static void predict(const void *view, int64_t begin, int64_t end)
     for (int64_t k = begin; k < end; k++) {
         const int32_t b = q->wet[k];
         const double dt = q->solved ? s->dt*inverse_mass(s, k) : 0;
+        double still[3];
+        sph_soft_still_force(s, b, still);
         for (int a = 0; a < 3; a++)
-            q->answer[k][a] = (&soft->velocity[b].x)[a] + dt*(q->known[k][a] - (&soft->push[b].x)[a]);
+            q->answer[k][a] = (&soft->velocity[b].x)[a] +
+                              dt*(q->known[k][a] + still[a] - (&soft->push[b].x)[a]);
     }
 }
 
@@ -469,17 +476,13 @@ void sph_soft_correct(tobi_system *s, const double *in)
         for (int a = 0; a < 3; a++) q->change[k][a] += s->dt*q->answer[k][a];
 }
 
-/* What a full vessel takes from gravity presses on the solids as the liquid that they displace would. */
 static void press_all(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const tobi_soft *soft = solids_of(s);
-    const double density = s->fluid[0].density;
     for (int64_t b = begin; b < end; b++) {
-        tobi_float4 push = { 0, 0, 0, 0 };
-        for (int a = 0; a < s->box.dimension; a++)
-            (&push.x)[a] = (float)(-density*soft->size[b].volume*(s->sim->def.gravity[a] - s->gravity[a]));
-        soft->push[b] = push;
+        double still[3];
+        sph_soft_still_force(s, b, still);
+        s->sim->soft.push[b] = (tobi_float4){ (float)still[0], (float)still[1], (float)still[2], 0 };
     }
 }
 
@@ -555,7 +558,8 @@ int64_t sph_soft_bytes(const sph_soft *q)
            q->first_room*(int64_t)sizeof *q->first + q->answer_room*(int64_t)sizeof *q->answer +
            q->known_room*(int64_t)sizeof *q->known +
            q->change_room*(int64_t)sizeof *q->change + q->velocity_room*(int64_t)sizeof *q->velocity +
-           q->layer_room*(int64_t)sizeof *q->layer + q->last_room*(int64_t)sizeof *q->last +
+           q->layer_room*(int64_t)sizeof *q->layer + q->dry_room*(int64_t)sizeof *q->dry + q->marks.room +
+           q->last_room*(int64_t)sizeof *q->last +
            q->found_room*(int64_t)sizeof *q->found;
 }
 
@@ -571,5 +575,7 @@ void sph_soft_free(sph_soft *q)
     tobi_array_free(q->layer);
     tobi_array_free(q->last);
     tobi_array_free(q->found);
+    tobi_array_free(q->dry);
+    tobi_array_free(q->marks.taken);
     memset(q, 0, sizeof *q);
 }

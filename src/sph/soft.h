@@ -7,6 +7,14 @@
 
 struct tobi_system;
 
+/* Where solids are: boxes of one width around their particles. */
+typedef struct sph_soft_marks {
+    double low[3], inverse;          /* m, 1/m: lower corner, 1/width                               */
+    int n[3];
+    uint8_t *taken;                  /* [n] 1: a point of a solid is there                          */
+    int64_t room;
+} sph_soft_marks;
+
 typedef struct sph_soft {
     sph_soft_link *link;             /* by point, then by particle                                  */
     int64_t count;
@@ -21,9 +29,11 @@ typedef struct sph_soft {
                                         inertia the pressure at the point has less; of isph         */
     int32_t *last;                   /* [particles] last link of each, -1 = none                    */
     int64_t *found;                  /* [rows of the solids] scratch of the search                  */
+    float *dry;                      /* [rows of the solids] m: depth of what air is beside, or 0   */
+    sph_soft_marks marks;
     int solved;                      /* 1: they answer within a solve                               */
     int64_t link_room, wet_room, first_room, answer_room, known_room, change_room, velocity_room;
-    int64_t layer_room, last_room, found_room;
+    int64_t layer_room, last_room, found_room, dry_room;
 } sph_soft;
 
 /* Finds which particles see which points, at their present places. */
@@ -49,6 +59,15 @@ void sph_soft_predict(struct tobi_system *s, int solved);
 void sph_soft_correct(struct tobi_system *s, const double *in);
 /* The forces of this step on the points. After the solve. */
 void sph_soft_load(struct tobi_system *s);
+/* N, on a point: that of pressures that no solve knows, sph/hydrostatic.h; and on all of them. */
+void sph_soft_still_force(const struct tobi_system *s, int64_t point, double force[3]);
+void sph_soft_still_sum(struct tobi_system *s, double force[3]);
+/* Marks where they are, for the next two; sph_soft_find does it. */
+tobi_status sph_soft_mark(struct tobi_system *s, tobi_error *err);
+/* Points of bodies that a solid touches count as wet. After sph_soft_find. */
+void sph_soft_wet_bodies(struct tobi_system *s);
+/* Depths below a depth, m, where a solid has air beside it, into `dry`. Returns the largest. */
+double sph_soft_find_dry(struct tobi_system *s, double below);
 /* As tobi_couple_compliance, of the lightest point: m2/kg. */
 double sph_soft_compliance(const struct tobi_system *s);
 /* The longest step for the friction at points where liquid sticks, s; INFINITY without. */

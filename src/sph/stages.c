@@ -184,6 +184,7 @@ tobi_status sph_find_boundaries(tobi_system *s, sph_view *v, const sph_kernels *
         tobi_boundary_add_gradients(s);
     }
     TOBI_TRY(sph_soft_find(s, err));
+    sph_soft_wet_bodies(s);
     sph_soft_add_gradients(s);
     sph_stage(s, v, SPH_SEE);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);

@@ -28,7 +28,6 @@ typedef struct wcsph {
     /* survives a restart; vessel: SPH_VESSEL_*; low, level: depths of the surface and of still water, m */
     struct { double speed, vessel, low, level, open; } memory;
     double sound;                                 /* m/s                                              */
-    int rests;                                    /* 1: water begins at rest                          */
     double compliance;                            /* m2/kg, of the bodies: tobi_couple_compliance     */
 } wcsph;
 
@@ -65,8 +64,6 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the wcsph state");
     m->def = *(const tobi_wcsph_def *)s->def;
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
-    m->rests = m->def.still_water;
-    m->def.still_water &= !s->sim->soft.solids;   /* the solids' points know nothing of it */
     m->sound = find_sound(s);
     m->compliance = fmax(tobi_couple_compliance(s), sph_soft_compliance(s));
     return TOBI_OK;
@@ -121,16 +118,21 @@ static double find_surface(tobi_system *s)
     return sph_reference_low(s);
 }
 
-/* Once, in a vessel just looked into. Beside soft solids the pressure of rest is all in the particles. */
+/* Once, in a vessel just looked into. Above air beside a soft solid rest is all in the particles. */
 static void start_at_rest(tobi_system *s, wcsph *m)
 {
-    if (m->rests && sph_reference_begins(s)) m->memory.level = m->memory.low = find_surface(s);
+    int dry = 0;
+    if (m->def.still_water && sph_reference_begins(s)) {
+        m->memory.low = find_surface(s);
+        m->memory.level = sph_reference_surface(s);
+        dry = m->memory.low > m->memory.level;
+    }
     bind_view(s, m);
     m->view.reference_before = sph_of(s)->reference;
-    if (!m->def.still_water) m->view.reference.cover = INFINITY;
+    if (dry) m->view.reference.cover = INFINITY;
     launch(s, m, m->kernel->sph_rest, NULL);
-    if (m->rests && !(m->view.reference.push > 0)) sph_openings_start(s);
-    if (!m->def.still_water) m->memory.level = 0;
+    if (m->def.still_water && !(m->view.reference.push > 0)) sph_openings_start(s);
+    if (dry) m->memory.level = 0;
 }
 
 static tobi_status find_neighbors(tobi_system *s, wcsph *m, double *clock, tobi_error *err)
