@@ -10,7 +10,6 @@
 typedef struct resume_options {
     const char *dir;
     overrides set;
-    double until;       /* s, 0 = as the scene says */
     int quiet;
 } resume_options;
 
@@ -27,7 +26,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case 't': overrides_add(&o->set, "threads=%d", parse_threads(state, value)); break;
     case 'q': o->quiet = 1; break;
-    case KEY_UNTIL: o->until = parse_positive(state, "--until", value); break;
+    case KEY_UNTIL: overrides_add(&o->set, "end_time=%.17g", parse_positive(state, "--until", value)); break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
     return 0;
@@ -63,8 +62,8 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
     if (tobi_run_resume(world, tobi_scene_output_def(scene), o->dir, &run, &err) != TOBI_OK) {
         code = complain("%s", err.text);
     } else {
-        double end = o->until > 0.0 ? o->until : tobi_scene_world_def(scene)->end_time;
-        drive_options d = { .scene = scene, .dir = o->dir, .end = end, .quiet = o->quiet };
+        drive_options d = { .scene = scene, .dir = o->dir, .end = tobi_scene_world_def(scene)->end_time,
+                            .quiet = o->quiet };
         if (!o->quiet) fprintf(stderr, "tobiuo: %s\n", tobi_run_note(run));
         if (*tobi_run_losses(run)) complain("results in %s: %s", o->dir, tobi_run_losses(run));
         code = drive(world, run, &d);
