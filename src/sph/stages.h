@@ -3,6 +3,9 @@
 #include "core/system.h"
 #include "sph/kernels.h"
 
+/* Spacings; with an isph.surface_height below it the outermost particles themselves have no pressure. */
+#define SPH_LEAST_HEIGHT 0.1
+
 /* A vessel that is full at the start stays full: voids that disorder opens are then no free surface.
    Pockets: an open one in which isph has met closed pockets. */
 enum { SPH_VESSEL_UNKNOWN, SPH_VESSEL_OPEN, SPH_VESSEL_FULL, SPH_VESSEL_POCKETS };

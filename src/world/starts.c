@@ -3,6 +3,7 @@
    motions that jump later are not found. */
 #include "base/error.h"
 #include "geom/vec3.h"
+#include "sph/stages.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
@@ -85,6 +86,19 @@ static tobi_status note_compression(tobi_world *w, tobi_error *err)
     return tobi_world_add_notes(w, "fluid", s->fluid[0].name, text, err);
 }
 
+/* With p = 0 at the particles that a rule calls surface, one that comes or goes changes the pressure of all
+   below it; with loss they do so by and by. */
+static tobi_status note_rough_surface(tobi_world *w, tobi_error *err)
+{
+    static const char text[] = "is p = 0 at the particles of the surface: with this surface_rule a tank at "
+                               "rest does not stay so; loss, or 0.2 and more, keep it\n";
+    const tobi_system *s = &w->system[0];
+    const tobi_isph_def *def = s->def;
+    if (strcmp(s->method->name, "isph") != 0 || def->surface_rule == TOBI_SURFACE_LOSS ||
+        !(def->surface_height < SPH_LEAST_HEIGHT)) return TOBI_OK;
+    return tobi_world_add_notes(w, "world", "isph.surface_height", text, err);
+}
+
 /* Angles of contact where no free surface has tension; 90 degrees, the default, asks for nothing. */
 static tobi_status note_contact_angles(tobi_world *w, tobi_error *err)
 {
@@ -140,5 +154,6 @@ tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err)
         TOBI_TRY(tobi_at_key(err, note_jerk(w, &w->sim.bodies[k], err), "bodies[%d].motion", k));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(note_gap(w, &w->regions[k], err));
     TOBI_TRY(note_contact_angles(w, err));
+    TOBI_TRY(note_rough_surface(w, err));
     return note_compression(w, err);
 }

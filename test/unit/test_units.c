@@ -82,6 +82,37 @@ static void a_tank_is_not(void **state)
     if (all > 1) fail_msg("%d notes", all);
 }
 
+static int notes_of_surface(int rule, double height)
+{
+    tobi_world_def def = tobi_default_world_def();
+    tobi_isph_def isph = tobi_default_isph_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_world *w;
+    int found = 0;
+    def.method = "isph";
+    def.spacing = 0.1;
+    fluid.name = "water";
+    isph.surface_rule = rule;
+    isph.surface_height = height;
+    for (int a = 0; a < 3; a++) def.domain_max[a] = 1, fill.box_max[a] = a < 2 ? 1 : 0.5;
+    OK(tobi_world_create(&def, &isph, &w, &err));
+    OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
+    OK(tobi_world_start(w, &err));
+    for (int k = 0; tobi_world_note(w, k); k++)
+        found += strstr(tobi_world_note(w, k), "'isph.surface_height': is p = 0 at the particles") != NULL;
+    tobi_world_destroy(w);
+    return found;
+}
+
+static void a_rough_surface_is_told(void **state)
+{
+    (void)state;
+    assert_int_equal(notes_of_surface(TOBI_SURFACE_COUNT, 0), 1);
+    assert_int_equal(notes_of_surface(TOBI_SURFACE_COUNT, 0.2), 0);
+    assert_int_equal(notes_of_surface(TOBI_SURFACE_LOSS, 0), 0);
+}
+
 /* Litres per second. */
 static void a_jet_is_told(void **state)
 {
@@ -116,7 +147,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(other_units_are_told),
         cmocka_unit_test(a_tank_is_not),
-        cmocka_unit_test(a_jet_is_told),
+        cmocka_unit_test(a_rough_surface_is_told), cmocka_unit_test(a_jet_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

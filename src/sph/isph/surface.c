@@ -4,6 +4,7 @@
    some hundredths of a spacing. */
 #include "sph/isph/isph.k.h"
 #include "sph/isph/surface.h"
+#include "sph/stages.h"
 #include <math.h>
 
 enum { REACH = 5 };      /* spacings, more than the widest support */
@@ -48,8 +49,8 @@ static row_sums sum_row(const tobi_smoothing_constants *c, int layer, const doub
     return s;
 }
 
-/* Spacings; below, the outermost particles have no pressure: their rows are AT_ROW times as stiff. */
-static const double LEAST_HEIGHT = 0.1, AT_ROW = 1e3;
+/* Times as stiff are the rows of particles without pressure. */
+static const double AT_ROW = 1e3;
 
 void isph_surface_measure(isph_view *v, const tobi_smoothing_constants *c, double height)
 {
@@ -67,7 +68,7 @@ void isph_surface_measure(isph_view *v, const tobi_smoothing_constants *c, doubl
     v->surface_row = 1;
     v->surface_row = top.difference/(height*isph_excess(v, v->surface_loss, top.weight, 1));
     v->surface_force = (1/(d*d) - top.gradient)/(2*height*top.concentration_gradient);
-    if (height >= LEAST_HEIGHT) return;
+    if (height >= SPH_LEAST_HEIGHT) return;
     v->surface_row = AT_ROW;
     v->surface_force = 1;
 }
