@@ -13,6 +13,8 @@
 
 /* Pictures per second at most: more are left out. */
 static const double FASTEST = 60;
+/* Pictures per second that ffmpeg reads. */
+static const double LEAST_RATE = 1e-3, MOST_RATE = 1e6;
 
 typedef struct movie_options {
     const char *dir, *out, *view;
@@ -345,6 +347,16 @@ static int redraw_and_make(const movie_options *o, const char *out)
     return code;
 }
 
+/* Before anything is drawn for it. */
+static int check_speed(const movie_options *o)
+{
+    int64_t outputs;
+    const double interval = find_interval(o->dir, &outputs), rate = 1/(interval*o->slow);
+    if (!(interval > 0) || (rate >= LEAST_RATE && rate <= MOST_RATE)) return 0;
+    return complain("--slow %g makes %.3g pictures per second of outputs %g s apart; allowed are %g to %g",
+                    o->slow, rate, interval, LEAST_RATE, MOST_RATE);
+}
+
 const struct argp movie_argp = { .options = options, .parser = parse, .args_doc = "DIR",
     .doc = "Make a movie of the run in DIR, with ffmpeg, or a sheet of a dozen pictures. Pictures that the "
            "run did not draw are drawn now, from its results." };
@@ -358,6 +370,7 @@ int tobiuo_movie(int argc, char **argv)
         return complain("out of memory");
     const char *out = o.out ? o.out : own;
     int code = access(o.dir, F_OK) == 0 ? 0 : complain_run(o.dir, "there is no run");
+    if (code == 0 && !is_png(out)) code = check_speed(&o);
     if (code == 0) code = prepare_movie(out, o.force);
     if (code == 0 && !is_png(out)) code = check_encoder();
     if (code == 0) code = o.set.count ? redraw_and_make(&o, out) : complete_and_make(&o, out);

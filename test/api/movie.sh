@@ -79,6 +79,8 @@ check "11 pictures of 0.02 s make 0.22 s" is "100%d run/movie.mp4" 11 0.22
 expect 1 "exists; --force replaces it" movie "100%d run"
 expect 0 "" movie "100%d run" --force --slow 10
 check "ten times slower" is "100%d run/movie.mp4" 11 2.2
+expect 1 "--slow 1e+30 makes 5e-29 pictures per second of outputs 0.02 s apart; allowed are 0.001 to 1e+06" \
+    movie "100%d run" --slow 1e30 --force
 expect 0 "" movie "100%d run" --slow 0.2 --out fast.mp4
 check "at most 60 pictures a second" is fast.mp4 4 0.067
 for kind in webm gif; do
