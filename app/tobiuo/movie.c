@@ -126,13 +126,14 @@ static double find_usual_step(const table *t, int column)
     return usual;
 }
 
-/* s from one output to the next; 0 if the table does not say. *outputs: how many there were. */
+/* s from one output to the next; 0 if the table does not say. *outputs: how many there were; -1 after a
+   complaint. */
 static double find_interval(const char *dir, int64_t *outputs)
 {
     table t = { 0 };
     char *path = NULL;
     double interval = 0;
-    *outputs = 0;
+    *outputs = -1;
     if (asprintf(&path, "%s/history.csv", dir) < 0) return 0;
     if (table_read(&t, path) == 0) {
         const int column = table_column(&t, "time");
@@ -352,6 +353,7 @@ static int check_speed(const movie_options *o)
 {
     int64_t outputs;
     const double interval = find_interval(o->dir, &outputs), rate = 1/(interval*o->slow);
+    if (outputs < 0) return EXIT_ERROR;
     if (!(interval > 0) || (rate >= LEAST_RATE && rate <= MOST_RATE)) return 0;
     return complain("--slow %g makes %.3g pictures per second of outputs %g s apart; allowed are %g to %g",
                     o->slow, rate, interval, LEAST_RATE, MOST_RATE);

@@ -291,7 +291,7 @@ static int write_folder(const char *dir, const char *text, size_t size)
     if (asprintf(&path, "%s/scene.json", dir) < 0) return complain("out of memory");
     int code = mkdir(dir, 0777) == 0 ? 0
              : errno == EEXIST ? complain("%s is there already; name another folder", dir)
-                               : complain("%s: %s", dir, strerror(errno));
+                               : complain("cannot make the folder '%s': %s", dir, strerror(errno));
     if (!code && (code = write_new(path, text, size)) != 0) rmdir(dir);
     free(path);
     return code;

@@ -54,7 +54,8 @@ static int copy_file(const char *from, const char *to)
 
 static int make_folder(const char *path)
 {
-    return mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : complain("%s: %s", path, strerror(errno));
+    if (mkdir(path, 0777) == 0 || errno == EEXIST) return 0;
+    return complain("cannot make the folder '%s': %s", path, strerror(errno));
 }
 
 /* --- the list ----------------------------------------------------------------------------- */

@@ -219,8 +219,17 @@ static int choose_folder(sweep *s)
     return 0;
 }
 
+/* A run has one end. */
+static int has_two_ends(const sweep *s)
+{
+    int has = 0;
+    for (int k = 0; k < s->axis_count; k++) has |= s->until && strcmp(s->axes[k].path, "end_time") == 0;
+    return has;
+}
+
 static int do_sweep(sweep *s)
 {
+    if (has_two_ends(s)) return complain("--until and --set end_time: one of them");
     int code = finish_axes(s);
     if (!code) code = choose_folder(s);
     if (!code) code = check_runs(s);

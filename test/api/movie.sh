@@ -39,6 +39,10 @@ rm -rf plain/fluid* plain/frames/frame_000010.png
 expect 0 "No such file" movie plain --out kept.png
 rm -rf plain/frames
 expect 1 "No such file" movie plain --out none.png
+mv plain/history.csv kept.csv && : > plain/history.csv
+expect 1 "history.csv is empty" movie plain --out none.mp4
+check "which is said once" test "$(grep -c . err.txt)" = 1
+mv kept.csv plain/history.csv
 check "without results and pictures there is no sheet" test ! -e none.png
 expect 0 "" run drop.json --out short --quiet --frames --until 0.001 --set output.interval=1
 check "the end of a run shorter than the interval has a picture" test -s short/frames/frame_000001.png

@@ -24,6 +24,7 @@ done
 expect 0 "" new static_pressure --spacing 0.0125 --support=2.4
 check "as users name it" test -s static_pressure_PS0d0125_CSML2d4_RK2/scene.json
 expect 0 "" check static_pressure_PS0d0125_CSML2d4_RK2
+expect 1 "cannot make the folder '': No such file or directory" new static_pressure ""
 expect 1 "is there already" new static_pressure --spacing 0.0125 --support=2.4
 expect 0 "" new --dimension 2 --method dfsph dam_break --spacing 0.02
 check "2-D and another method" test -s dam_break_2d_PS0d02_dfsph/scene.json
@@ -92,6 +93,7 @@ expect 2 "--set spacing=1,2,1: 1 is there twice" sweep x --set spacing=1,2,1
 expect 2 "--set spacing is given twice" sweep x --set spacing=1 --set spacing=2
 expect 2 "--jobs: '0' is not a number from 1 to 256" sweep x --jobs 0
 flat=dam_break_2d_PS0d02_dfsph
+expect 1 "--until and --set end_time: one of them" sweep $flat --set end_time=0.01,0.02 --until 0.03
 expect 1 "a sweep varies something" sweep $flat
 expect 1 'did you mean "spacing"?' sweep $flat --set spacng=1,2
 expect 1 "run 1 of 2, method=mlsmpm, cannot be" sweep $flat --set method=dfsph,mlsmpm
