@@ -107,6 +107,7 @@ static void write_bodies(const report *r)
 
 static void write_probes(const report *r)
 {
+    static const char *const kinds[] = { "point", "level", "patch", "run-up", "flow", "volume" };
     const part p = { &r->probes, NULL };
     const json_t *probes = report_value(r, "probes"), *probe;
     char prefix[200], title[300];
@@ -116,7 +117,9 @@ static void write_probes(const report *r)
         if (!name || !kind) continue;
         snprintf(prefix, sizeof prefix, "%s_", name);
         snprintf(title, sizeof title, "Probe %s", name);
-        write_columns(r, &p, strcmp(kind, "level") == 0 ? TOBI_TABLE_LEVEL : TOBI_TABLE_POINT, prefix, title);
+        for (int t = 0; t < 6; t++)
+            if (strcmp(kind, kinds[t]) == 0)
+                write_columns(r, &p, (tobi_table)(TOBI_TABLE_POINT + t), prefix, title);
     }
 }
 

@@ -27,7 +27,8 @@ cat > tank.json <<'END'
   "bodies": [ { "name": "box & co", "mesh": "box.obj", "translation": [0.7, 0.5, 0.5], "dynamics": "free",
                 "density": 500 },
               { "name": "plate", "mesh": "box.obj", "scale": [0.2, 1, 1], "translation": [0.7, 0.5, 0.8] } ],
-  "probes": [ { "name": "P", "position": [0.1, 0.5, 0.1] }, { "name": "H", "kind": "level", "position": [0.2, 0.5, 0] } ],
+  "probes": [ { "name": "P", "position": [0.1, 0.5, 0.1] }, { "name": "H", "kind": "level", "position": [0.2, 0.5, 0] },
+              { "name": "V", "kind": "volume", "position": [0.2, 0.5, 0.2], "length": 0.3, "width": 0.3, "height": 0.3 } ],
   "output": { "interval": 0.02 } }
 END
 cat > jelly.json <<'END'
@@ -72,6 +73,7 @@ check "a dam" says bare.html "Water stands beside free floor"
 check "waves of dfsph" says bare.html "Set dfsph.support to 3"
 check "a table of the box" says bare.html "Body box & co"
 check "of the probes" says bare.html "Probe P"
+check "of each kind of probe" says bare.html "Volume of liquid in the box"
 check "with units" says bare.html "<td>Pa<td>"
 check "times by stage" says bare.html "density solve"
 check "the scene" says bare.html '"interval": 0.02'
