@@ -407,10 +407,10 @@ typedef struct tobi_line_info {
 
 /* A joint of a body with another one, or with the domain. */
 enum { TOBI_JOINT_LIMIT = 64 };
-typedef enum tobi_joint_between { TOBI_BETWEEN_HINGE, TOBI_BETWEEN_BALL } tobi_joint_between;
+typedef enum { TOBI_BETWEEN_HINGE, TOBI_BETWEEN_BALL, TOBI_BETWEEN_FIXED } tobi_joint_between;
 typedef struct tobi_joint_def {
     const char *name;
-    int    kind;                /* tobi_joint_between; in 2-D both are the same                      */
+    int    kind;                /* tobi_joint_between; in 2-D a ball joint is a hinge                */
     const char *body;           /* name of a free or controlled body                                 */
     const char *to_body;        /* name of another body, not a deforming one; NULL = the domain      */
     double point[3], axis[3];   /* m, of any length: as the bodies start. axis of a hinge, 0: z      */
@@ -421,7 +421,7 @@ typedef struct tobi_joint_def {
 /* A joint after a step. */
 typedef struct tobi_joint_info {
     double force[3];            /* N on the body, mean over the step                                 */
-    double moment[3];           /* N m on it, of a hinge, across its axis                            */
+    double moment[3];           /* N m on it; of a hinge across its axis, of a ball joint 0          */
     double angle;               /* degrees since the start, of the body against the other            */
     double gap;                 /* m between what is joined                                          */
 } tobi_joint_info;

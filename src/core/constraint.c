@@ -24,7 +24,8 @@ static int moves(const tobi_body *bodies, int body)
 
 static int count_rows(const tobi_constraints *c, const tobi_constraint *j)
 {
-    return (c->dimension == 2 ? 2 : j->kind == TOBI_BETWEEN_BALL ? 3 : 5) + (j->lower < j->upper);
+    const int fixed = j->kind == TOBI_BETWEEN_FIXED;
+    return (c->dimension == 2 ? 2 : j->kind == TOBI_BETWEEN_BALL ? 3 : 5) + (fixed || j->lower < j->upper);
 }
 
 static int find_slot(tobi_constraints *c, const tobi_body *bodies, int body)
@@ -150,20 +151,20 @@ static void make_tangents(const double n[3], double out[2][3])
 }
 
 /* Along the axes of the domain the places do not part; about two axes across a hinge the bodies do not turn
-   against each other, at a stop not about its axis. */
+   against each other, at a stop or fixed not about its axis: that is the last row. */
 static void make_rows(const tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
                       tobi_constraint_row *row, int count)
 {
-    const int stop = j->lower < j->upper ? count - 1 : -1;
+    const int fixed = j->kind == TOBI_BETWEEN_FIXED, last = fixed || j->lower < j->upper ? count - 1 : -1;
     double point[2][3], axis[2][3], across[2][3];
     for (int side = 0; side < 2; side++) find_end(j, side, bodies, 0, point[side], axis[side]);
     make_tangents(axis[0], across);
     for (int i = 0; i < count; i++) {
         const double along[3] = { i == 0, i == 1, i == 2 };
         tobi_constraint_row *r = &row[i];
-        r->stop = i == stop;
+        r->stop = i == last && !fixed;
         r->turns = i >= c->dimension;
-        memcpy(r->axis, r->stop ? axis[0] : r->turns ? across[i - c->dimension] : along, sizeof r->axis);
+        memcpy(r->axis, i == last ? axis[0] : r->turns ? across[i - c->dimension] : along, sizeof r->axis);
         memset(r->jacobian, 0, sizeof r->jacobian);
         for (int side = 0; side < 2; side++) {
             double arm[3], lever[3];
@@ -187,6 +188,7 @@ static void find_gap(const tobi_constraint *j, const tobi_body *bodies, tobi_con
     vec3_cross(turned, axis[0], axis[1]);
     for (int i = 0; i < count; i++) row[i].gap = vec3_dot(row[i].axis, row[i].turns ? turned : apart);
     tobi_constraint_row *last = &row[count - 1];
+    if (j->kind == TOBI_BETWEEN_FIXED) last->gap = -tobi_constraint_angle(j, bodies, 1);
     if (!last->stop) return;
     const double angle = tobi_constraint_angle(j, bodies, 1);
     last->gap = (last->active < 0 ? j->lower : j->upper) - angle;
@@ -522,7 +524,7 @@ void tobi_constraints_count(tobi_constraints *c)
                             row->axis);
 }
 
-/* Of a ball joint, about any axis. */
+/* Of a ball joint, or one that is fixed, about any axis. */
 static double find_ball_angle(const tobi_constraint *j, const tobi_body *bodies)
 {
     double q[4], back[4];

@@ -4,7 +4,7 @@
 #pragma once
 #include "core/body.h"
 
-enum { TOBI_CONSTRAINT_ROWS = 6 };       /* of a hinge in 3-D with stops */
+enum { TOBI_CONSTRAINT_ROWS = 6 };       /* of a hinge in 3-D with stops, of a fixed joint */
 
 /* A row: the change of one number by velocity and angular velocity of both bodies. */
 typedef struct tobi_constraint_row {

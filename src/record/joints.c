@@ -9,10 +9,10 @@ enum { VALUES = 8 };
 
 static const struct { const char *name, *unit; int solid; } values[VALUES] = {
     { "force_x", "N", 0 },  { "force_y", "N", 0 },    { "force_z", "N", 1 },   { "moment_x", "N m", 1 },
-    { "moment_y", "N m", 1 }, { "moment_z", "N m", 1 }, { "angle", "degrees", 0 }, { "gap", "m", 0 },
+    { "moment_y", "N m", 1 }, { "moment_z", "N m", 0 }, { "angle", "degrees", 0 }, { "gap", "m", 0 },
 };
 
-/* In 2-D a joint has neither a force along z nor a moment. */
+/* In 2-D a joint has no force along z, and a moment about z alone. */
 static int is_told(const tobi_run *run, int value)
 {
     return !values[value].solid || run->world->sim.def.dimension == 3;

@@ -42,14 +42,16 @@ static void check_bodies(const tobi_scene *scene, tobi_source *source, const tob
                             joint->to_body);
 }
 
+static const char *const kinds[] = { "hinge", "ball", "fixed" };
+
 static void check_axis(const tobi_scene *scene, tobi_source *source, const tobi_joint_def *joint,
                        const tobi_place *entry)
 {
     tobi_place axis = { entry, "axis", 0 };
     const double *a = joint->axis;
     const int given = a[0] != 0 || a[1] != 0 || a[2] != 0;
-    if (joint->kind == TOBI_BETWEEN_BALL && given)
-        tobi_source_mistake(source, &axis, "is of a hinge, a ball joint has none");
+    if (joint->kind != TOBI_BETWEEN_HINGE && given)
+        tobi_source_mistake(source, &axis, "is of a hinge, a %s joint has none", kinds[joint->kind]);
     else if (scene->world.dimension == 2 && (a[0] != 0 || a[1] != 0))
         tobi_source_mistake(source, &axis, "must be along z in a 2-D scene");
     else if (scene->world.dimension == 3 && joint->kind == TOBI_BETWEEN_HINGE && !given)
@@ -63,8 +65,9 @@ static void check_hinge(const tobi_scene *scene, tobi_source *source, const tobi
     const double values[] = { joint->lower, joint->upper, joint->stiffness, joint->damping };
     for (int k = 0; k < 4; k++) {
         tobi_place place = { entry, keys[k], 0 };
-        if (scene->world.dimension == 3 && joint->kind == TOBI_BETWEEN_BALL && values[k] != 0)
-            tobi_source_mistake(source, &place, "is of a hinge, a ball joint has none");
+        const int ball = scene->world.dimension == 3 && joint->kind == TOBI_BETWEEN_BALL;
+        if ((ball || joint->kind == TOBI_BETWEEN_FIXED) && values[k] != 0)
+            tobi_source_mistake(source, &place, "is of a hinge, a %s joint has none", kinds[joint->kind]);
     }
     tobi_place rest = { entry, "rest", 0 };
     if (joint->rest != 0 && !(joint->stiffness > 0))

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char *const kinds[] = { "hinge", "ball", "fixed" };
+
 static tobi_status check_bodies(const tobi_world *w, const tobi_joint_def *def, tobi_constraint *j,
                                 tobi_error *err)
 {
@@ -31,6 +33,11 @@ static tobi_status check_bodies(const tobi_world *w, const tobi_joint_def *def, 
     if (j->body[0] == j->body[1])
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': both sides are body '%s'",
                                           def->name, def->body), "to_body");
+    if (def->kind == TOBI_BETWEEN_FIXED && j->body[1] >= 0 &&
+        w->sim.bodies[j->body[1]].rigid.kind == TOBI_PRESCRIBED)
+        return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "joint '%s': body '%s' is prescribed; what "
+                                          "is fixed to it has its motion: give '%s' the same, prescribed",
+                                          def->name, def->to_body, def->body), "to_body");
     if (w->sim.bodies[j->body[0]].rigid.kind == TOBI_PRESCRIBED)
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': body '%s' is prescribed; a joint "
                                           "holds a free or controlled one, and may go to a prescribed one",
@@ -38,14 +45,15 @@ static tobi_status check_bodies(const tobi_world *w, const tobi_joint_def *def, 
     return TOBI_OK;
 }
 
-/* A ball joint has none of what acts about an axis. */
+/* A ball joint has none of what acts about an axis, nor one that is fixed. */
 static tobi_status take_hinge(const tobi_joint_def *def, int dimension, tobi_constraint *j, tobi_error *err)
 {
     const double degree = acos(-1)/180;
     const int acts = def->stiffness > 0 || def->damping > 0, stops = def->lower < 0 || def->upper > 0;
-    if (dimension == 3 && def->kind == TOBI_BETWEEN_BALL && (acts || stops))
-        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': a ball joint has no stops, spring "
-                                          "or damper; a hinge has", def->name), "kind");
+    const int hinge = def->kind == TOBI_BETWEEN_HINGE || (dimension == 2 && def->kind == TOBI_BETWEEN_BALL);
+    if (!hinge && (acts || stops))
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': a %s joint has no stops, spring "
+                                          "or damper; a hinge has", def->name, kinds[def->kind]), "kind");
     if (def->rest != 0 && !(def->stiffness > 0))
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': rest is of a spring, which needs "
                                           "a stiffness", def->name), "rest");
@@ -68,8 +76,10 @@ static tobi_status check_axis(const tobi_joint_def *def, int dimension, tobi_con
     if (dimension == 2 && !given) axis[2] = 1;
     if (dimension == 3 && def->kind == TOBI_BETWEEN_HINGE && !given)
         return tobi_fail(err, TOBI_INVALID, "joint '%s': a hinge has an axis", def->name);
-    if (def->kind == TOBI_BETWEEN_BALL && given)
-        return tobi_fail(err, TOBI_INVALID, "joint '%s': a ball joint has no axis", def->name);
+    if (def->kind != TOBI_BETWEEN_HINGE && given)
+        return tobi_fail(err, TOBI_INVALID, "joint '%s': a %s joint has no axis", def->name,
+                         kinds[def->kind]);
+    if (def->kind == TOBI_BETWEEN_FIXED) axis[2] = 1;            /* any */
     vec3_normalize(axis);
     return TOBI_OK;
 }

@@ -194,9 +194,9 @@ const tobi_param_table tobi_line_table = {
 static const tobi_param joint_rows[] = {
     { .key = "name", TEXT, AT(tobi_joint_def, name), .unit = "name", .text = "joint", .required = true,
       .doc = "Name of the joint, used once in a scene and in the columns of joints.csv." },
-    { .key = "kind", CHOICE("hinge|ball", 2), AT(tobi_joint_def, kind),
-      .doc = "A hinge lets the bodies turn against each other about its axis, a ball joint about its point. "
-             "In 2-D both are the same." },
+    { .key = "kind", CHOICE("hinge|ball|fixed", 3), AT(tobi_joint_def, kind),
+      .doc = "A hinge lets the bodies turn against each other about its axis, a ball joint about its point; "
+             "fixed, they are one. In 2-D a ball joint is a hinge." },
     { .key = "body", TEXT, AT(tobi_joint_def, body), .unit = "name", .required = true,
       .doc = "Name of the free or controlled body that it holds." },
     { .key = "to_body", TEXT, AT(tobi_joint_def, to_body), .unit = "name",

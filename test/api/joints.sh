@@ -18,10 +18,10 @@ END2
 for method in dfsph wcsph isph eisph; do
     expect 0 "" run rafts.json --out whole --quiet --force --threads 1 --set method=$method
     check "$method: a table of forces, angles and gaps" \
-        test "$(head -1 whole/joints.csv | cut -d, -f1-6)" = \
-        "time [s],hinge_force_x [N],hinge_force_y [N],hinge_angle [degrees],hinge_gap [m],foot_force_x [N]"
+        test "$(head -1 whole/joints.csv | cut -d, -f1-7)" = \
+        "time [s],hinge_force_x [N],hinge_force_y [N],hinge_moment_z [N m],hinge_angle [degrees],hinge_gap [m],foot_force_x [N]"
     check "$method: the joints are closed" \
-        awk -F, 'NR > 1 && ($5 > 1e-12 || $9 > 1e-12 || $0 ~ /nan/) { bad = 1 } END { exit bad || NR < 8 }' \
+        awk -F, 'NR > 1 && ($6 > 1e-12 || $11 > 1e-12 || $0 ~ /nan/) { bad = 1 } END { exit bad || NR < 8 }' \
         whole/joints.csv
     expect 0 "" run rafts.json --out parts --quiet --force --threads 2 --until 0.05 --set method=$method
     expect 0 "" resume parts --quiet --threads 2 --until 0.1
@@ -42,7 +42,7 @@ cat > jelly.json <<'END2'
 END2
 expect 0 "" run jelly.json --out jelly --quiet
 check "joined bodies fall on a soft solid and stay joined" \
-    awk -F, 'NR > 1 && ($5 > 1e-12 || $0 ~ /nan/) { bad = 1 } END { exit bad || NR < 99 }' jelly/joints.csv
+    awk -F, 'NR > 1 && ($6 > 1e-12 || $0 ~ /nan/) { bad = 1 } END { exit bad || NR < 99 }' jelly/joints.csv
 
 cat > both.json <<'END2'
 { "dimension": 2, "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.025, "end_time": 0.1,
@@ -67,7 +67,7 @@ for method in dfsph wcsph isph eisph; do
     told=$([ $method = dfsph ] && echo "scatters by")
     expect 0 "$told" run both.json --out whole --quiet --force --threads 1 --set method=$method
     check "$method: joints in water with soft solids are closed" \
-        awk -F, 'NR > 1 && ($5 > 1e-12 || $9 > 1e-12 || $13 > 1e-12 || $0 ~ /nan/) { bad = 1 }
+        awk -F, 'NR > 1 && ($6 > 1e-12 || $11 > 1e-12 || $16 > 1e-12 || $0 ~ /nan/) { bad = 1 }
                  END { exit bad || NR < 8 }' whole/joints.csv
     expect 0 "" run both.json --out parts --quiet --force --threads 2 --until 0.05 --set method=$method
     expect 0 "" resume parts --quiet --threads 2 --until 0.1

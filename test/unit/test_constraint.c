@@ -237,6 +237,29 @@ static void a_rod_goes_round_on_a_cone(void **state)
     rig_close(&g);
 }
 
+/* A rod that is fixed at one end bears its weight there, at rest and in place. */
+static void a_fixed_rod_carries_its_weight(void **state)
+{
+    (void)state;
+    rig g;
+    rig_open(&g, 4, downward);
+    const double slope = 0.3, from[3] = { 2, 2, 3 };
+    const tobi_body *b = hang_rod(&g, rig_def(), from, 1, slope);
+    double start[3];
+    join(&g, TOBI_BETWEEN_FIXED, 0, -1, from, along_y);
+    rig_start(&g);
+    memcpy(start, b->rigid.position, sizeof start);
+    for (int n = 0; n < 200; n++) rig_step(&g, 1e-3);
+    const tobi_joint_info *i = &g.joints.at[0].info;
+    const double weight = 10*b->rigid.mass, arm = start[0] - from[0];
+    print_message("moves %.1e m, force %.9f, moment %.9f of the weight's\n",
+                  sqrt(vec3_distance2(start, b->rigid.position)), i->force[2]/weight,
+                  i->moment[1]/weight/arm);
+    assert_true(vec3_distance2(start, b->rigid.position) < 1e-20 && fabs(i->angle) < 1e-9);
+    assert_true(fabs(i->force[2]/weight - 1) < 1e-9 && fabs(i->moment[1]/(weight*arm) + 1) < 1e-9);
+    rig_close(&g);
+}
+
 static tobi_status accelerate(void *user, double t, int64_t count, const double (*rest)[3], double (*out)[3],
                               tobi_error *err)
 {
@@ -292,7 +315,7 @@ static void find_momentum(const rig *g, double linear[3], double angular[3])
 static void free_bodies_keep_momentum_and_energy(void **state)
 {
     (void)state;
-    for (int kind = TOBI_BETWEEN_HINGE; kind <= TOBI_BETWEEN_BALL; kind++) {
+    for (int kind = TOBI_BETWEEN_HINGE; kind <= TOBI_BETWEEN_FIXED; kind++) {
         rig g;
         double linear[2][3], angular[2][3];
         rig_open(&g, 8, weightless);
@@ -486,6 +509,10 @@ static void wrong_joints_are_refused(void **state)
     refuse(world, &d, TOBI_INVALID, "joint 'j': a ball joint has no axis");
     d.kind = 7;
     refuse(world, &d, TOBI_INVALID, "kind");
+    d = right, d.kind = TOBI_BETWEEN_FIXED, d.to_body = "post";
+    refuse(world, &d, TOBI_UNSUPPORTED, "joint 'j': body 'post' is prescribed; what is fixed to it has");
+    d.to_body = NULL;
+    refuse(world, &d, TOBI_INVALID, "joint 'j': a fixed joint has no axis");
     d = right, d.to_body = "post";
     char name[16];
     for (int k = 0; k < TOBI_JOINT_LIMIT; k++) {
@@ -519,6 +546,7 @@ int main(void)
         cmocka_unit_test(a_chain_carries_what_hangs_below),
         cmocka_unit_test(a_hinge_carries_moments_across_its_axis),
         cmocka_unit_test(a_rod_goes_round_on_a_cone),
+        cmocka_unit_test(a_fixed_rod_carries_its_weight),
         cmocka_unit_test(a_moved_pivot_takes_the_body_along),
         cmocka_unit_test(free_bodies_keep_momentum_and_energy),
         cmocka_unit_test(a_closed_loop_moves_as_one),
