@@ -116,7 +116,7 @@ static int meets_body(const tobi_system *s, const double from[3], const double t
     return 0;
 }
 
-/* Whether the line from x on is free of particles and bodies. */
+/* Whether the line from x on is free of particles, bodies and soft solids. */
 static int is_free(const tobi_system *s, const double x[3], int axis, double length)
 {
     look l = { .axis = axis, .length = length, .aside = ASIDE*s->smoothing.spacing };
@@ -127,17 +127,15 @@ static int is_free(const tobi_system *s, const double x[3], int axis, double len
     if (length > 0) cells.last[axis] = end.last[axis];
     else cells.first[axis] = end.first[axis];
     sph_visit(s, x, &cells, meet, &l);
-    return !l.met && !meets_body(s, x, to);
+    return !l.met && !meets_body(s, x, to) && !sph_soft_meets(s, x, to);
 }
 
-/* Whether the air above is to be seen from a particle: along one of the axes, and from there straight up. Not
-   beside soft solids: what a look meets there is not known. */
+/* Whether the air above is to be seen from a particle: along one of the axes, and from there straight up. */
 static int looks_out(const tobi_system *s, int64_t i)
 {
     const tobi_double3 *p = &s->particles.position[i];
     const double *down = sph_of(s)->reference.down, length = LOOK*s->smoothing.h;
     int up = 0;
-    if (s->sim->soft.solids) return 0;
     for (int a = 1; a < s->box.dimension; a++)
         if (fabs(down[a]) > fabs(down[up])) up = a;
     for (int way = 0; way < 2*s->box.dimension; way++) {

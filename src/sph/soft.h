@@ -62,8 +62,10 @@ void sph_soft_load(struct tobi_system *s);
 /* N, on a point: that of pressures that no solve knows, sph/hydrostatic.h; and on all of them. */
 void sph_soft_still_force(const struct tobi_system *s, int64_t point, double force[3]);
 void sph_soft_still_sum(struct tobi_system *s, double force[3]);
-/* Marks where they are, for the next two; sph_soft_find does it. */
+/* Marks where they are, for the next three; sph_soft_find does it. */
 tobi_status sph_soft_mark(struct tobi_system *s, tobi_error *err);
+/* Whether a solid is on the line between two places. */
+int sph_soft_meets(const struct tobi_system *s, const double from[3], const double to[3]);
 /* Points of bodies that a solid touches count as wet. After sph_soft_find. */
 void sph_soft_wet_bodies(struct tobi_system *s);
 /* Depths below a depth, m, where a solid has air beside it, into `dry`. Returns the largest. */

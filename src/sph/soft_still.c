@@ -137,6 +137,24 @@ static int meets_solid(const tobi_system *s, const double x[3])
     return 0;
 }
 
+int sph_soft_meets(const tobi_system *s, const double from[3], const double to[3])
+{
+    const sph_soft_marks *m = &sph_of(s)->soft.marks;
+    double way[3];
+    if (!s->sim->soft.solids) return 0;
+    vec3_sub(way, to, from);
+    const int parts = 1 + (int)(sqrt(vec3_dot(way, way))*m->inverse);
+    for (int k = 0; k <= parts; k++) {
+        double x[3];
+        int at[3];
+        for (int a = 0; a < 3; a++) x[a] = from[a] + k*way[a]/parts;
+        find_mark(s, x, at);
+        const int64_t place = place_of(m, at);
+        if (place >= 0 && m->taken[place]) return 1;
+    }
+    return 0;
+}
+
 /* --- air beside them ------------------------------------------------------------------------------- */
 
 static void meet(void *user, int64_t i, const double d[3])
