@@ -299,14 +299,15 @@ class Case:
 
 
 def find_commit():
-    """The commit of this clone; +changes if what decides a result differs from it."""
+    """The last commit that changed what decides a result; +changes if files differ from it."""
     def git(*command):
         done = subprocess.run(["git", "-C", str(ROOT), *command], capture_output=True, text=True)
         if done.returncode:
             sys.exit(f"no commit for the page ({done.stderr.strip()}): give --commit")
         return done.stdout.strip()
-    changed = git("status", "--porcelain", "--untracked-files=no", "--", "src", "include", "app", "test")
-    return git("rev-parse", "--short", "HEAD") + ("+changes" if changed else "")
+    deciding = ("src", "include", "app", "test")
+    changed = git("status", "--porcelain", "--untracked-files=no", "--", *deciding)
+    return git("log", "-1", "--format=%h", "--", *deciding) + ("+changes" if changed else "")
 
 
 def find_machine():
