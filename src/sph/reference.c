@@ -19,22 +19,28 @@ enum { DROPS = 1024 };
 /* Spacings: a drop at most, however high the domain is. */
 static const double DROP_MOST = 0.25;
 
-void sph_reference_set(tobi_system *s, double low)
+tobi_reference sph_reference_make(const tobi_system *s, double low)
 {
-    tobi_reference *w = &sph_of(s)->reference;
     double g2 = 0, h = s->smoothing.h, least, most;
-    *w = (tobi_reference){.cover = COVER*h, .ramp = RAMP*h, .rest = REST*h};
-    w->level = low - 0.5*s->smoothing.spacing;
+    tobi_reference w = {.cover = COVER*h, .ramp = RAMP*h, .rest = REST*h};
+    w.level = low - 0.5*s->smoothing.spacing;
     for (int a = 0; a < s->box.dimension; a++)
         if (!s->box.periodic[a]) g2 += s->gravity[a]*s->gravity[a];
-    if (!(g2 > 0)) return;
+    if (!(g2 > 0)) return w;
     tobi_system_densities(s, &least, &most);
     for (int a = 0; a < s->box.dimension; a++) {
         if (s->box.periodic[a]) continue;
-        w->down[a] = s->gravity[a]/sqrt(g2);
-        w->corner[a] = w->down[a] > 0 ? 0 : s->box.size[a];
+        w.down[a] = s->gravity[a]/sqrt(g2);
+        w.corner[a] = w.down[a] > 0 ? 0 : s->box.size[a];
     }
-    w->push = low > 0 ? least*sqrt(g2) : 0;
+    w.push = low > 0 ? least*sqrt(g2) : 0;
+    return w;
+}
+
+void sph_reference_set(tobi_system *s, double low)
+{
+    sph_of(s)->reference = sph_reference_make(s, low);
+    if (!sph_of(s)->mirrors) sph_of(s)->soft.still = sph_of(s)->reference;
 }
 
 /* Depths from top on, and those above as if there; scale: drops per metre. */
@@ -86,12 +92,14 @@ static double find_low(const tobi_system *s, double *middle)
 
 double sph_reference_surface(tobi_system *s) { return find_low(s, &sph_of(s)->middle); }
 
-double sph_reference_low(tobi_system *s)
+double sph_reference_below_air(tobi_system *s, double low)
 {
     double middle;
-    const double low = sph_reference_surface(s), dry = low > 0 ? sph_soft_find_dry(s, low) : 0;
+    const double dry = low > 0 ? sph_soft_find_dry(s, low) : 0;
     return fmax(low, find_depth(s, sph_of(s)->soft.dry, s->sim->soft.count, dry, &middle));
 }
+
+double sph_reference_low(tobi_system *s) { return sph_reference_below_air(s, sph_reference_surface(s)); }
 
 /* --- surfaces that open in the depth --------------------------------------------------------------- */
 

@@ -3,6 +3,8 @@
 #include "core/system.h"
 #include "sph/stages.h"
 
+/* The reference below a depth of `low`, m; as in the next. */
+tobi_reference sph_reference_make(const tobi_system *s, double low);
 /* Sets s->still to the reference below a depth of `low`, m; 0 and a vessel without gravity across its walls
    have none. That of the lightest fluid, so that none is left to rise. */
 void sph_reference_set(tobi_system *s, double low);
@@ -10,7 +12,9 @@ void sph_reference_set(tobi_system *s, double low);
    where it has no more. After sph_measure_density, which leaves the depths in particles.surface_depth. Leaves
    their median in the state. */
 double sph_reference_surface(tobi_system *s);
-/* The same, or of the air beside soft solids where that is deeper (sph/soft_still.c). */
+/* `low`, m, or the depth of the air beside soft solids where that is deeper (sph/soft_still.c). */
+double sph_reference_below_air(tobi_system *s, double low);
+/* That of the free surface. */
 double sph_reference_low(tobi_system *s);
 /* Drop of those parts of it that lie where still water presses, but from which the air above is to be seen,
    as under a gate that is drawn up; 0 without. Leaves these parts alone in particles.surface_depth; nothing

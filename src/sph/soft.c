@@ -207,7 +207,7 @@ tobi_status sph_soft_find(tobi_system *s, tobi_error *err)
     if (q->points > 0) memset(q->known, 0, (size_t)q->points*sizeof *q->known);
     if (sph_of(s)->mirrors) tobi_loop(s->sim->exec.threads, q->points, 0, begin_mirrors, s);
     chain_links(s);
-    return sph_of(s)->mirrors ? TOBI_OK : sph_soft_mark(s, err);
+    return sph_soft_mark(s, err);
 }
 
 /* The share of the kernel of which sph_wall_density makes this sum over a lattice: its inverse. */
@@ -249,7 +249,7 @@ static void find_force(const tobi_system *s, const sph_soft_link *l, int hydrost
     const tobi_fluid *fluid = &s->fluid[s->particles.fluid[l->particle]];
     const double nu = q->size[b].grip*fluid->viscosity/fluid->density;
     const float *u = &s->particles.velocity[l->particle].x, *w = &q->velocity[b].x;
-    const tobi_reference *still = &sph_of(s)->reference;
+    const tobi_reference *still = &soft_of(s)->still;
     const double held = still->push*tobi_reference_share(still, &q->position[b].x)/fluid->density;
     double r[3], fall = 0;
     subtract(s, l->particle, &q->position[b].x, r);
@@ -259,7 +259,8 @@ static void find_force(const tobi_system *s, const sph_soft_link *l, int hydrost
         out[a] = -fall*l->push[a] + 4*nu*l->rate*((double)w[a] - u[a]);
 }
 
-/* Reactions on the points, before the velocities change. */
+/* Reactions on the points, before the velocities change. The pressures of isph have the still water that
+   presses the points by itself, and leave it. */
 static void keep_reactions(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
@@ -269,7 +270,10 @@ static void keep_reactions(const void *view, int64_t begin, int64_t end)
         for (int64_t n = q->first[k]; n < q->first[k + 1]; n++) {
             const double mass = s->smoothing.volume*s->fluid[s->particles.fluid[q->link[n].particle]].density;
             find_force(s, &q->link[n], 1, force);
-            for (int a = 0; a < 3; a++) sum[a] -= mass*force[a];
+            const double *x = &s->particles.position[q->link[n].particle].x,
+                         still = sph_of(s)->mirrors ? tobi_reference_pressure(&q->still, x) : 0;
+            for (int a = 0; a < 3; a++)
+                sum[a] -= mass*force[a] + 2*s->smoothing.volume*still*q->link[n].push[a];
         }
         memcpy(q->known[k], sum, sizeof sum);
     }

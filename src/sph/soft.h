@@ -3,6 +3,7 @@
    after each product of the pressure's operator; load. All do nothing in a world without both. */
 #pragma once
 #include "base/error.h"
+#include "sph/reference_pressure.h"
 #include "sph/soft.k.h"
 
 struct tobi_system;
@@ -31,6 +32,7 @@ typedef struct sph_soft {
     int64_t *found;                  /* [rows of the solids] scratch of the search                  */
     float *dry;                      /* [rows of the solids] m: depth of what air is beside, or 0   */
     sph_soft_marks marks;
+    tobi_reference still;            /* that of the liquid; by isph of what presses solids alone    */
     int solved;                      /* 1: they answer within a solve                               */
     int64_t link_room, wet_room, first_room, answer_room, known_room, change_room, velocity_room;
     int64_t layer_room, last_room, found_room, dry_room;

@@ -1,8 +1,8 @@
 /* Hydrostatic pressure that no solve knows (sph/hydrostatic.h) beside soft solids: it presses a solid as the
    liquid that it displaces would, by -V grad p at each particle. That is exact for a solid within the liquid,
    however its particles and those of the liquid stand (decision 112). The level of still water lies below
-   air beside a solid, as behind a gate. Where a body touches a solid both are pressed as by the liquid.
-   Drawback: still water does not compress a solid, and is under one that lies on the floor. */
+   air beside a solid, as behind a gate. Where a body touches a solid both are pressed as by the liquid;
+   where a side of the domain does, neither is. Drawback: still water does not compress a solid. */
 #include "sph/soft.h"
 #include "exec/exec.h"
 #include "geom/vec3.h"
@@ -17,15 +17,33 @@ static const double LOOK = 2.5, LIQUID = 1.1, COVER = 0.75;
 /* Marks at most: per point of a solid, and besides. */
 static const double MARKS_EACH = 8, MARKS = 1e6;
 
+/* Takes the pressure from what touches a side of the domain: no liquid is between. The layers before the
+   side have one spacing of the solid each; the first has the force. */
+static void leave_sides(const tobi_system *s, int64_t point, double force[3])
+{
+    const tobi_soft *soft = &s->sim->soft;
+    const double d = soft->solids->smoothing.spacing, area = soft->size[point].volume/d;
+    const tobi_double3 p = soft->position[point];
+    for (int a = 0; a < s->box.dimension; a++)
+        for (int upper = 0; upper < 2 && !s->box.periodic[a]; upper++) {
+            double at[3] = { p.x, p.y, p.z };
+            const double gap = upper ? s->box.size[a] - at[a] : at[a], share = 1 - fabs(gap/d - 0.5);
+            if (!(share > 0)) continue;
+            at[a] = upper ? s->box.size[a] : 0;
+            force[a] += (upper ? 1 : -1)*share*area*tobi_reference_pressure(&sph_of(s)->soft.still, at);
+        }
+}
+
 void sph_soft_still_force(const tobi_system *s, int64_t point, double force[3])
 {
     const tobi_soft *soft = &s->sim->soft;
-    const tobi_reference *w = &sph_of(s)->reference;
+    const tobi_reference *w = &sph_of(s)->soft.still;
     const double volume = soft->size[point].volume, density = s->fluid[0].density,
                  held = w->push*tobi_reference_share(w, &soft->position[point].x);
     for (int a = 0; a < 3; a++) force[a] = 0;
     for (int a = 0; a < s->box.dimension; a++)
         force[a] = -volume*(density*(s->sim->def.gravity[a] - s->gravity[a]) + held*w->down[a]);
+    if (w->push > 0) leave_sides(s, point, force);
 }
 
 static void sum_forces(const void *view, int64_t begin, int64_t end, double *totals)
@@ -207,7 +225,7 @@ static void find_dry(const void *view, int64_t begin, int64_t end, double *total
     const sph_soft *q = &sph_of(d->s)->soft;
     for (int64_t b = begin; b < end; b++) {
         const tobi_double3 p = d->s->sim->soft.position[b];
-        const double x[3] = { p.x, p.y, p.z }, depth = tobi_reference_depth(&sph_of(d->s)->reference, x);
+        const double x[3] = { p.x, p.y, p.z }, depth = tobi_reference_depth(&q->still, x);
         q->dry[b] = depth > d->below && is_dry(d->s, x) ? (float)depth : 0;
         totals[6] = fmax(totals[6], q->dry[b]);
     }

@@ -452,7 +452,7 @@ static void water_weighs_on_a_soft_floor(void **state)
     static const char floor[] = "\"min\": [0, 0], \"max\": [0.4, 0.04]",
                       water[] = "\"min\": [0, 0.04], \"max\": [0.4, 0.34]";
     (void)state;
-    for (int k = 2; k < METHODS; k++) {
+    for (int k = 0; k < METHODS; k++) {
         tobi_world *world = make_tank(methods[k], floor, water, 9.81, 0);
         const double share = push_solid(world, 0.1, 0.3)/(0.2*-9.81*1000*0.4*0.3);
         print_message("%s: the floor carries %.4f of the water\n", methods[k], share);
@@ -514,7 +514,7 @@ static double find_rise(const char *method, double density, int soft)
 static void a_soft_block_rises_as_a_rigid_one(void **state)
 {
     (void)state;
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 3; k++) {
         const double soft = find_rise(methods[k], 800, 1), rigid = find_rise(methods[k], 800, 0),
                      neutral = find_rise(methods[k], 1000, 1);
         print_message("%s: it rises %.2f mm, a rigid one %.2f; as dense as water %.4f\n", methods[k],

@@ -11,6 +11,7 @@
 #include "sph/kernels.h"
 #include "sph/openings.h"
 #include "sph/phases.h"
+#include "sph/reference.h"
 #include "sph/sensor/probe.h"
 #include "sph/viscosity.h"
 #include <math.h>
@@ -190,6 +191,32 @@ static void find_geometry(tobi_system *s, isph *m, double *totals)
     launch(s, m, m->kernel->isph_geometry, totals);
 }
 
+/* Depths of what is at a free surface. totals: the largest. */
+static void find_depths(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    const isph *m = s->state;
+    float *depth = sph_fields_of(&s->particles)->surface_depth;
+    for (int64_t i = begin; i < end; i++) {
+        const double *x = &s->particles.position[i].x;
+        depth[i] = m->solver.view.gate[i] >= 1 ? (float)tobi_reference_depth(&m->common.soft.still, x) : 0;
+        totals[6] = fmax(totals[6], depth[i]);
+    }
+}
+
+/* The hydrostatic pressure that presses soft solids by itself (decision 112). The solve knows all of it. */
+static void find_still(tobi_system *s, isph *m)
+{
+    tobi_reference *still = &m->common.soft.still;
+    double t[TOBI_TOTALS];
+    if (!s->sim->soft.solids) return;
+    *still = sph_reference_make(s, 0);
+    tobi_launch(&s->sim->exec, TOBI_HOST(find_depths, 0, 1), s, 0, s->particles.count, t);
+    m->common.lowest = t[6];
+    *still = sph_reference_make(s, m->memory.vessel != SPH_VESSEL_FULL ? sph_reference_low(s)
+                                   : sph_reference_below_air(s, 0.5*s->smoothing.spacing));
+}
+
 tobi_status isph_begin(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state;
@@ -208,6 +235,7 @@ tobi_status isph_begin(tobi_system *s, tobi_error *err)
     sph_openings_mark(s, &m->view);
     v->held = m->view.held;
     find_geometry(s, m, t);
+    find_still(s, m);
     sph_soft_balance(s, v->concentration_gradient, v->gate);
     s->info.volume_drift = t[1] > 0 ? -t[0]/t[1] : 0;
     tobi_stage_end(&s->sim->stages, "geometry", &clock);
