@@ -3,10 +3,10 @@
 #include "core/system.h"
 #include "sph/stages.h"
 
-/* The reference below a depth of `low`, m; as in the next. */
+/* The reference below a depth of `low`, m; 0 and a vessel without gravity across its walls have none. That of
+   the lightest fluid, so that none is left to rise. */
 tobi_reference sph_reference_make(const tobi_system *s, double low);
-/* Sets s->still to the reference below a depth of `low`, m; 0 and a vessel without gravity across its walls
-   have none. That of the lightest fluid, so that none is left to rise. */
+/* Takes it for the liquid; by dfsph and wcsph soft solids feel the same. */
 void sph_reference_set(tobi_system *s, double low);
 /* Drop of the free surface, m, but for the few deepest of its particles, which disorder may have made; 0
    where it has no more. After sph_measure_density, which leaves the depths in particles.surface_depth. Leaves

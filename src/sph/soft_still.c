@@ -6,7 +6,7 @@
 #include "sph/soft.h"
 #include "exec/exec.h"
 #include "geom/vec3.h"
-#include "sph/reference_pressure.h"
+#include "sph/reference.h"
 #include "sph/sensor/around.h"
 #include "sph/state.h"
 #include <string.h>
@@ -19,7 +19,7 @@ static const double MARKS_EACH = 8, MARKS = 1e6;
 
 /* Takes the pressure from what touches a side of the domain: no liquid is between. The layers before the
    side have one spacing of the solid each; the first has the force. */
-static void leave_sides(const tobi_system *s, int64_t point, double force[3])
+static void take_off_at_sides(const tobi_system *s, int64_t point, double force[3])
 {
     const tobi_soft *soft = &s->sim->soft;
     const double d = soft->solids->smoothing.spacing, area = soft->size[point].volume/d;
@@ -43,7 +43,7 @@ void sph_soft_still_force(const tobi_system *s, int64_t point, double force[3])
     for (int a = 0; a < 3; a++) force[a] = 0;
     for (int a = 0; a < s->box.dimension; a++)
         force[a] = -volume*(density*(s->sim->def.gravity[a] - s->gravity[a]) + held*w->down[a]);
-    if (w->push > 0) leave_sides(s, point, force);
+    if (w->push > 0) take_off_at_sides(s, point, force);
 }
 
 static void sum_forces(const void *view, int64_t begin, int64_t end, double *totals)
@@ -79,19 +79,24 @@ static void find_ends(const void *view, int64_t begin, int64_t end, double *tota
     }
 }
 
-static int64_t place_of(const sph_soft_marks *m, const int at[3])
+/* The mark around x; beyond them all -2 or two past the last. */
+static void find_mark(const sph_soft_marks *m, const double *x, int at[3])
 {
     for (int a = 0; a < 3; a++)
-        if (at[a] < 0 || at[a] >= m->n[a]) return -1;
-    return ((int64_t)at[2]*m->n[1] + at[1])*m->n[0] + at[0];
+        at[a] = (int)floor(fmin(fmax((x[a] - m->low[a])*m->inverse, -2), m->n[a] + 2));
 }
 
-static void find_mark(const tobi_system *s, const double *x, int at[3])
+/* NULL beyond them. */
+static uint8_t *get_mark(const sph_soft_marks *m, int x, int y, int z)
 {
-    const sph_soft_marks *m = &sph_of(s)->soft.marks;
-    for (int a = 0; a < 3; a++)
-        at[a] = a >= s->box.dimension ? 0
-              : (int)floor(fmin(fmax((x[a] - m->low[a])*m->inverse, -2), m->n[a] + 2));
+    if (x < 0 || y < 0 || z < 0 || x >= m->n[0] || y >= m->n[1] || z >= m->n[2]) return NULL;
+    return &m->taken[((int64_t)z*m->n[1] + y)*m->n[0] + x];
+}
+
+static int is_marked(const sph_soft_marks *m, int x, int y, int z)
+{
+    const uint8_t *mark = get_mark(m, x, y, z);
+    return mark && *mark;
 }
 
 static void mark_points(const void *view, int64_t begin, int64_t end)
@@ -100,23 +105,25 @@ static void mark_points(const void *view, int64_t begin, int64_t end)
     const sph_soft_marks *m = &sph_of(s)->soft.marks;
     for (int64_t b = begin; b < end; b++) {
         int at[3];
-        find_mark(s, &s->sim->soft.position[b].x, at);
-        const int64_t place = place_of(m, at);
-        if (place >= 0) __atomic_store_n(&m->taken[place], 1, __ATOMIC_RELAXED);
+        find_mark(m, &s->sim->soft.position[b].x, at);
+        uint8_t *mark = get_mark(m, at[0], at[1], at[2]);
+        if (mark) __atomic_store_n(mark, 1, __ATOMIC_RELAXED);
     }
 }
 
-/* Marks as wide as the spacing of the solids, wider where these lie far apart. */
+/* Marks as wide as the spacing of the solids, wider where these lie far apart. Nobody asks where the
+   liquid feels no gravity. */
 tobi_status sph_soft_mark(tobi_system *s, tobi_error *err)
 {
     sph_soft_marks *m = &sph_of(s)->soft.marks;
     const tobi_soft *soft = &s->sim->soft;
     double low[3] = { 0 }, size[3] = { 0 }, volume = 1, t[TOBI_TOTALS];
+    if (!(sph_reference_make(s, 1).push > 0)) return TOBI_OK;
     for (int a = 0; a < s->box.dimension; a++) {
         const axis_of v = { soft, a, s->box.size[a] };
         tobi_launch(&s->sim->exec, TOBI_HOST(find_ends, 0, 2), &v, 0, soft->count, t);
         low[a] = s->box.size[a] - t[7];
-        volume *= size[a] = t[6] - low[a] + s->smoothing.spacing;
+        volume *= size[a] = fmax(t[6] - low[a], 0) + s->smoothing.spacing;
     }
     const double least = soft->solids->smoothing.spacing, most = MARKS_EACH*(double)soft->count + MARKS;
     const double width = fmax(least, s->box.dimension == 3 ? cbrt(volume/most) : sqrt(volume/most));
@@ -143,15 +150,12 @@ tobi_status sph_soft_mark(tobi_system *s, tobi_error *err)
 static int meets_solid(const tobi_system *s, const double x[3])
 {
     const sph_soft_marks *m = &sph_of(s)->soft.marks;
-    const int deep = s->box.dimension == 3;
     int at[3];
-    find_mark(s, x, at);
-    for (int k = -deep; k <= deep; k++)
+    find_mark(m, x, at);
+    for (int k = -1; k <= 1; k++)
         for (int j = -1; j <= 1; j++)
-            for (int i = -1; i <= 1; i++) {
-                const int64_t place = place_of(m, (const int[3]){ at[0] + i, at[1] + j, at[2] + k });
-                if (place >= 0 && m->taken[place]) return 1;
-            }
+            for (int i = -1; i <= 1; i++)
+                if (is_marked(m, at[0] + i, at[1] + j, at[2] + k)) return 1;
     return 0;
 }
 
@@ -166,9 +170,8 @@ int sph_soft_meets(const tobi_system *s, const double from[3], const double to[3
         double x[3];
         int at[3];
         for (int a = 0; a < 3; a++) x[a] = from[a] + k*way[a]/parts;
-        find_mark(s, x, at);
-        const int64_t place = place_of(m, at);
-        if (place >= 0 && m->taken[place]) return 1;
+        find_mark(m, x, at);
+        if (is_marked(m, at[0], at[1], at[2])) return 1;
     }
     return 0;
 }
@@ -191,7 +194,7 @@ static int meets_liquid(const tobi_system *s, const double x[3])
     return nearest < reach*reach;
 }
 
-static int meets_body(const tobi_system *s, const double x[3])
+static int is_near_body(const tobi_system *s, const double x[3])
 {
     tobi_bvh_hit hit;
     for (int k = 0; k < s->sim->body_count; k++) {
@@ -211,7 +214,7 @@ static int is_dry(const tobi_system *s, const double x[3])
         double at[3] = { x[0], x[1], x[2] };
         at[a] += way%2 ? -reach : reach;
         if (!s->box.periodic[a] && (at[a] < 0 || at[a] > s->box.size[a])) continue;
-        if (!meets_solid(s, at) && !meets_liquid(s, at) && !meets_body(s, at)) return 1;
+        if (!meets_solid(s, at) && !meets_liquid(s, at) && !is_near_body(s, at)) return 1;
     }
     return 0;
 }
