@@ -82,27 +82,34 @@ static void a_tank_is_not(void **state)
     if (all > 1) fail_msg("%d notes", all);
 }
 
-static int notes_of_surface(int rule, double height)
+/* A started pool by isph, 1 x 1 m; inlet: NULL = none. Returns how many of its notes have the text. */
+static int count_in_pool(const tobi_isph_def *isph, double spacing, double deep, const tobi_inlet_def *inlet,
+                         const char *text)
 {
     tobi_world_def def = tobi_default_world_def();
-    tobi_isph_def isph = tobi_default_isph_def();
     tobi_fluid_def fluid = tobi_default_fluid_def();
     tobi_fill_def fill = tobi_default_fill_def();
     tobi_world *w;
     int found = 0;
     def.method = "isph";
-    def.spacing = 0.1;
+    def.spacing = spacing;
     fluid.name = "water";
-    isph.surface_rule = rule;
-    isph.surface_height = height;
-    for (int a = 0; a < 3; a++) def.domain_max[a] = 1, fill.box_max[a] = a < 2 ? 1 : 0.5;
-    OK(tobi_world_create(&def, &isph, &w, &err));
+    for (int a = 0; a < 3; a++) def.domain_max[a] = 1, fill.box_max[a] = a < 2 ? 1 : deep;
+    OK(tobi_world_create(&def, isph, &w, &err));
     OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
+    if (inlet) OK(tobi_world_add_inlet(w, inlet, &err));
     OK(tobi_world_start(w, &err));
-    for (int k = 0; tobi_world_note(w, k); k++)
-        found += strstr(tobi_world_note(w, k), "'isph.surface_height': is p = 0 at the particles") != NULL;
+    for (int k = 0; tobi_world_note(w, k); k++) found += strstr(tobi_world_note(w, k), text) != NULL;
     tobi_world_destroy(w);
     return found;
+}
+
+static int notes_of_surface(int rule, double height)
+{
+    tobi_isph_def isph = tobi_default_isph_def();
+    isph.surface_rule = rule;
+    isph.surface_height = height;
+    return count_in_pool(&isph, 0.1, 0.5, NULL, "'isph.surface_height': is p = 0 at the particles");
 }
 
 static void a_rough_surface_is_told(void **state)
@@ -117,29 +124,13 @@ static void a_rough_surface_is_told(void **state)
 static void a_jet_is_told(void **state)
 {
     (void)state;
-    tobi_world_def def = tobi_default_world_def();
-    tobi_fluid_def fluid = tobi_default_fluid_def();
-    tobi_fill_def fill = tobi_default_fill_def();
     tobi_inlet_def inlet = tobi_default_inlet_def();
-    tobi_world *w;
-    int found = 0;
-    def.method = "isph";
-    def.spacing = 0.05;
-    fluid.name = "water";
-    for (int a = 0; a < 3; a++) def.domain_max[a] = 1, fill.box_max[a] = a < 2 ? 1 : 0.2;
     inlet.name = "pipe";
     memcpy(inlet.centre, (double[3]){ 0.5, 0.5, 0.5 }, sizeof inlet.centre);
     memcpy(inlet.normal, (double[3]){ 0, 0, -1 }, sizeof inlet.normal);
     inlet.radius = 0.1;
     inlet.flow_rate = 2;
-    OK(tobi_world_create(&def, NULL, &w, &err));
-    OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
-    OK(tobi_world_add_inlet(w, &inlet, &err));
-    OK(tobi_world_start(w, &err));
-    for (int k = 0; tobi_world_note(w, k); k++)
-        found += strstr(tobi_world_note(w, k), "'pipe': lets liquid in at up to 6") != NULL;
-    assert_int_equal(found, 1);
-    tobi_world_destroy(w);
+    assert_int_equal(count_in_pool(NULL, 0.05, 0.2, &inlet, "'pipe': lets liquid in at up to 6"), 1);
 }
 
 int main(void)
