@@ -50,7 +50,8 @@ static void expect(const char *text, const char *part, const char *absent)
         status = tobi_script_deform(script, 0.5, 1, REST(point), moved, &err);
         tobi_script_free(script);
     }
-    if (status != TOBI_SCRIPT || !strstr(err.text, part) || (absent && strstr(err.text, absent)))
+    const char *said = strstr(err.text, ": ");          /* the name of the file may hold any letters */
+    if (status != TOBI_SCRIPT || !said || !strstr(said, part) || (absent && strstr(said, absent)))
         fail_msg("<%.200s>: status %d, message <%s>, expected <%s>", text, status, err.text, part);
     assert_memory_equal(err.text, "motion script /", 15);
 }
