@@ -59,6 +59,7 @@ TOBI_API tobi_joint_def  tobi_default_joint_def(void);
 TOBI_API tobi_output_def tobi_default_output_def(void);
 TOBI_API tobi_reference_def tobi_default_reference_def(void);
 TOBI_API tobi_gravity_def tobi_default_gravity_def(void);
+TOBI_API tobi_central_def tobi_default_central_def(void);
 TOBI_API tobi_damping_def tobi_default_damping_def(void);
 
 /* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def, ...), NULL = its
@@ -154,6 +155,10 @@ TOBI_API tobi_status tobi_world_add_damping(tobi_world *world, const tobi_dampin
    back in time, TOBI_NOT_FOUND and TOBI_IO for the file. Checkpoints do not hold it. */
 TOBI_API tobi_status tobi_world_set_gravity_in_time(tobi_world *world, const tobi_gravity_def *def,
                                                     tobi_error *err);
+/* Before the start. A force towards a place; TOBI_INVALID for numbers out of range and, at the start, for a
+   periodic domain, where the force would jump; then TOBI_UNSUPPORTED in mlsmpm. Energies leave it out. */
+TOBI_API tobi_status tobi_world_set_central_force(tobi_world *world, const tobi_central_def *def,
+                                                  tobi_error *err);
 /* Before the start. All of the world is seen from a frame that moves, by a rigid motion from the pose of time
    0, instead of a tank that does: the liquid feels the fictitious forces. user must outlive the world.
    TOBI_UNSUPPORTED for a frame that turns, in mlsmpm. */

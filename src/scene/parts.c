@@ -31,6 +31,8 @@ static const tobi_part parts[] = {
       "Data that `tobiuo plot` draws beside the run's, if any." },
     { "world", "gravity_in_time", TOBI_PART_OBJECT, &tobi_gravity_table, 0, 0,
       "Gravity that changes with time." },
+    { "world", "central_force", TOBI_PART_OBJECT, &tobi_central_table, 0, 0,
+      "A force towards a place, if any." },
     { "world", "damping_zones", TOBI_PART_LIST, &tobi_damping_table, 0, 16,
       "Where liquids are damped, if anywhere: beaches." },
     { "world", "frame", TOBI_PART_MOTION, NULL, 0, 0,

@@ -1,4 +1,5 @@
-/* What a scene says about its tank as a whole: gravity in time, and the frame that it is seen from. */
+/* What a scene says about its tank as a whole: gravity in time, a central force, the frame that it is seen
+   from, damping zones. */
 #include "scene/tank.h"
 #include "scene/write.h"
 #include "base/param.h"
@@ -40,11 +41,14 @@ static void bind_zones(tobi_scene_tank *t, const tobi_binder *binder, json_t *li
 
 void tobi_tank_bind(tobi_scene_tank *t, const tobi_binder *binder, json_t *scene, const tobi_place *root)
 {
-    const tobi_place gravity = { root, "gravity_in_time", 0 };
+    const tobi_place gravity = { root, "gravity_in_time", 0 }, centre = { root, "central_force", 0 };
     json_t *changes = json_object_get(scene, "gravity_in_time"), *frame = json_object_get(scene, "frame");
     json_t *zones = json_object_get(scene, "damping_zones");
+    json_t *central = json_object_get(scene, "central_force");
     t->gravity = tobi_default_gravity_def();
+    t->central = tobi_default_central_def();
     if (changes) bind_gravity(t, binder, changes, &gravity);
+    if (central) tobi_bind(binder, &tobi_central_table, central, &centre, NULL, &t->central);
     if (frame) bind_frame(t, binder, frame, root);
     if (zones) bind_zones(t, binder, zones, root);
 }
@@ -52,6 +56,7 @@ void tobi_tank_bind(tobi_scene_tank *t, const tobi_binder *binder, json_t *scene
 tobi_status tobi_tank_build(const tobi_scene_tank *t, tobi_world *world, tobi_error *err)
 {
     if (t->changes) TOBI_TRY(tobi_world_set_gravity_in_time(world, &t->gravity, err));
+    if (t->central.rate > 0) TOBI_TRY(tobi_world_set_central_force(world, &t->central, err));
     return t->frame ? tobi_world_set_frame(world, tobi_motion_positions, t->frame, err) : TOBI_OK;
 }
 
@@ -66,6 +71,9 @@ int tobi_tank_write(const tobi_scene_tank *t, json_t *root)
     if (t->changes)
         failed |= json_object_set_new(root, "gravity_in_time",
                                       tobi_write_def(&tobi_gravity_table, &t->gravity));
+    if (t->central.rate > 0)
+        failed |= json_object_set_new(root, "central_force",
+                                      tobi_write_def(&tobi_central_table, &t->central));
     if (t->frame) failed |= json_object_set_new(root, "frame", tobi_motion_write(t->frame_def));
     return failed;
 }

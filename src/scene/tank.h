@@ -8,6 +8,7 @@ enum { TOBI_ZONES = 16 };
 typedef struct tobi_scene_tank {
     tobi_gravity_def gravity;
     int changes;                   /* 1: gravity does                             */
+    tobi_central_def central;      /* rate 0: there is none                       */
     tobi_motion_def frame_def[TOBI_MOTION_LIMIT];
     tobi_damping_def damping[TOBI_ZONES];
     int damping_count;

@@ -1,6 +1,6 @@
-/* What liquid and bodies feel besides the constant gravity, once a step at its middle: gravity in time, and
-   the frame of a tank that moves (decision 58). Drawback: derivatives of the frame are differences over a
-   millisecond, which a motion by noisy keyframes makes noise of. */
+/* What liquid and bodies feel besides the constant gravity, once a step at its middle: gravity in time, a
+   force towards a place, and the frame of a tank that moves (decision 58). Drawback: derivatives of the frame
+   are differences over a millisecond, which a motion by noisy keyframes makes noise of. */
 #include "world/acceleration.h"
 #include "base/error.h"
 #include "base/param.h"
@@ -20,6 +20,7 @@ struct tobi_drive {
     tobi_keyframes *rows;       /* of gravity, NULL = constant                      */
     int given[3];               /* which of its components                          */
     tobi_motion *swing;         /* its shift is gravity, m/s2; NULL = none          */
+    tobi_central_def central;   /* rate 0 = none                                    */
     int64_t sampled;            /* times that `sim.acceleration_most` knows         */
     tobi_motion_fn frame;       /* NULL = at rest                                   */
     void *frame_user;
@@ -102,6 +103,16 @@ tobi_status tobi_world_set_gravity_in_time(tobi_world *w, const tobi_gravity_def
     TOBI_TRY(need_drive(w, "gravity in time", err));
     free_gravity(w->drive);
     return make_gravity(def, w->drive, err);
+}
+
+tobi_status tobi_world_set_central_force(tobi_world *w, const tobi_central_def *def, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
+    TOBI_TRY(tobi_param_check(&tobi_central_table, def, err));
+    TOBI_TRY(need_drive(w, "central force", err));
+    w->drive->central = *def;
+    return TOBI_OK;
 }
 
 tobi_status tobi_world_set_frame(tobi_world *w, tobi_motion_fn motion, void *user, tobi_error *err)
@@ -204,8 +215,8 @@ static void flatten(tobi_acceleration *f, int dimension)
     }
 }
 
-/* The field at a time, of a step dt. */
-static tobi_status find_field(const tobi_world *w, double t, double dt, tobi_acceleration *f, tobi_error *err)
+/* Gravity in time and the frame at a time, of a step dt. */
+static tobi_status find_drive(const tobi_world *w, double t, double dt, tobi_acceleration *f, tobi_error *err)
 {
     pose now, rate, second;
     double g[3], C[3][3];
@@ -226,6 +237,33 @@ static tobi_status find_field(const tobi_world *w, double t, double dt, tobi_acc
     }
     for (int a = 0; a < 3; a++) f->uniform[a] = g[a] - w->sim.def.gravity[a];
     flatten(f, w->sim.def.dimension);
+    return TOBI_OK;
+}
+
+/* The whole field. */
+static tobi_status find_field(const tobi_world *w, double t, double dt, tobi_acceleration *f, tobi_error *err)
+{
+    const tobi_central_def *c = &w->drive->central;
+    TOBI_TRY(find_drive(w, t, dt, f, err));
+    for (int a = 0; a < w->sim.def.dimension; a++) {
+        f->gradient[a][a] -= c->rate*c->rate;
+        f->uniform[a] += c->rate*c->rate*(c->centre[a] - w->system[0].box.lower[a]);
+    }
+    return TOBI_OK;
+}
+
+static tobi_status check_central(const tobi_world *w, tobi_error *err)
+{
+    const tobi_box *box = &w->system[0].box;
+    if (!(w->drive->central.rate > 0)) return TOBI_OK;
+    for (int k = 0; k < w->system_count; k++)
+        if (w->system[k].method->solids)
+            return tobi_fail(err, TOBI_UNSUPPORTED, "%s does not know a central force",
+                             w->system[k].method->name);
+    for (int a = 0; a < box->dimension; a++)
+        if (box->periodic[a])
+            return tobi_fail(err, TOBI_INVALID, "the domain is periodic along %c, where a central force "
+                             "would jump", "xyz"[a]);
     return TOBI_OK;
 }
 
@@ -309,9 +347,10 @@ tobi_status tobi_world_start_drive(tobi_world *w, tobi_error *err)
 {
     const double end = w->sim.def.end_time;
     if (!w->drive) return TOBI_OK;
+    TOBI_TRY(tobi_at_key(err, check_central(w, err), "central_force"));
     for (int n = 0; n <= SAMPLES; n++) {
         tobi_acceleration f;
-        TOBI_TRY(find_field(w, end*n/SAMPLES, STEP, &f, err));
+        TOBI_TRY(find_drive(w, end*n/SAMPLES, STEP, &f, err));
         if (!is_finite(&f))
             return tobi_fail(err, TOBI_INVALID, "at t = %.9g s the acceleration of the frame is no number",
                              end*n/SAMPLES);

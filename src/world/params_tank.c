@@ -1,4 +1,4 @@
-/* Parameters of what a tank has: gravity in time, damping zones. */
+/* Parameters of what a tank has: gravity in time, a central force, damping zones. */
 #include "base/param_rows.h"
 #include "base/param.h"
 
@@ -24,6 +24,19 @@ const tobi_param_table tobi_gravity_table = {
     "gravity_in_time", "Gravity by a table, by a swing of each component, or both. "
     "The key gravity stays.",
     sizeof(tobi_gravity_def), gravity_rows };
+
+static const tobi_param central_rows[] = {
+    { .key = "centre", VEC3, AT(tobi_central_def, centre), PLACE, .unit = "m", .required = true,
+      .doc = "Place that the force points to." },
+    { .key = "rate", REAL, AT(tobi_central_def, rate), RANGE(1e-9, 1e6), .unit = "1/s", .required = true,
+      .doc = "The acceleration is rate^2 times the distance from centre: 2 pi/rate is the period of a "
+             "particle alone." },
+    { 0 }
+};
+
+const tobi_param_table tobi_central_table = {
+    "central_force", "A force towards a place, which grows with the distance, besides gravity.",
+    sizeof(tobi_central_def), central_rows };
 
 static const tobi_param damping_rows[] = {
     { .key = "box.min", VEC3, AT(tobi_damping_def, box_min), PLACE, .unit = "m", .required = true,

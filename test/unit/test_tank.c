@@ -100,6 +100,46 @@ static void gravity_follows_table_and_swing(void **state)
     unlink("gravity.csv");
 }
 
+/* -rate^2 (x - centre), of places that count from the lower corner; mlsmpm does not know it. */
+static void central_force_points_to_a_place(void **state)
+{
+    tobi_world *w = make_tank("dfsph", 2), *solids = make_tank("mlsmpm", 2);
+    tobi_central_def c = tobi_default_central_def();
+    const double x[3] = { 0.01, 0.02, 0 };
+    double a[3];
+    (void)state;
+    REFUSED(tobi_world_set_central_force(w, &c, &err), TOBI_INVALID, "rate");
+    c.rate = 3;
+    c.centre[0] = 0.05;
+    OK(tobi_world_set_central_force(w, &c, &err));
+    OK(tobi_world_start(w, &err));
+    tobi_acceleration_at(&w->sim.acceleration, x, a);
+    close_to(a[0], -9*(0.01 - 0.05), 1e-12);
+    close_to(a[1], -9*0.02, 1e-12);
+    REFUSED(tobi_world_set_central_force(w, &c, &err), TOBI_INVALID, "takes no other central force");
+    OK(tobi_world_set_central_force(solids, &c, &err));
+    REFUSED(tobi_world_start(solids, &err), TOBI_UNSUPPORTED, "mlsmpm does not know a central force");
+    tobi_world_destroy(w);
+    tobi_world_destroy(solids);
+}
+
+static void central_force_jumps_nowhere(void **state)
+{
+    tobi_scene *scene;
+    tobi_world *w = NULL;
+    const char *text =
+        "{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1], \"walls\": { \"x\": "
+        "\"periodic\" } }, \"spacing\": 0.1, \"end_time\": 1, \"fluids\": [ { \"name\": \"w\", \"fill\": "
+        "[ { \"box\": { \"min\": [0, 0], \"max\": [1, 0.5] } } ] } ], "
+        "\"central_force\": { \"centre\": [0, 0], \"rate\": 1 } }";
+    (void)state;
+    OK(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, &err));
+    OK(tobi_scene_build(scene, &w, &err));
+    REFUSED(tobi_world_start(w, &err), TOBI_INVALID, "periodic along x, where a central force");
+    tobi_world_destroy(w);
+    tobi_scene_free(scene);
+}
+
 /* A turn about z at a constant rate about (0.3, 0, 0), and a shift of a constant acceleration along y. */
 static tobi_status spin(void *user, double t, int64_t n, const double (*rest)[3], double (*to)[3],
                         tobi_error *err)
@@ -282,7 +322,9 @@ static tobi_status parse(const char *more, tobi_error *err)
     if (status != TOBI_OK) return status;
     char *resolved = tobi_scene_resolved(scene);
     tobi_world *w = NULL;
-    if (!strstr(resolved, "frame") || !strstr(resolved, "gravity_in_time")) fail_msg("%s", resolved);
+    if (!strstr(resolved, "frame") || !strstr(resolved, "gravity_in_time") ||
+        !strstr(resolved, "central_force"))
+        fail_msg("%s", resolved);
     OK(tobi_scene_build(scene, &w, &err));
     tobi_world_destroy(w);
     free(resolved);
@@ -294,9 +336,11 @@ static void scenes_say_it(void **state)
 {
     (void)state;
     OK(parse("\"frame\": [ { \"yaw\": { \"amplitude\": 2, \"period\": 1 } } ],\n"
-             "\"gravity_in_time\": { \"amplitude\": [1, 0], \"period\": 2 }", &err));
+             "\"gravity_in_time\": { \"amplitude\": [1, 0], \"period\": 2 },\n"
+             "\"central_force\": { \"centre\": [0.5, 0], \"rate\": 2 }", &err));
     REFUSED(parse("\"gravity_in_time\": { \"amplitude\": [1, 0] }", &err), TOBI_INVALID,
             "gravity in time has an amplitude without a period");
+    REFUSED(parse("\"central_force\": { \"centre\": [0, 0] }", &err), TOBI_INVALID, "rate");
     REFUSED(parse("\"damping_zones\": 3", &err), TOBI_INVALID, "list [ { ... } ] of 16 zones at most");
     REFUSED(parse("\"damping_zones\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 1] }, \"rate\": -1 } ]",
                   &err), TOBI_INVALID, "s.json:4:");
@@ -347,6 +391,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_gravity_is_refused),
         cmocka_unit_test(gravity_follows_table_and_swing),
+        cmocka_unit_test(central_force_points_to_a_place),
+        cmocka_unit_test(central_force_jumps_nowhere),
         cmocka_unit_test(frames_make_fictitious_forces),
         cmocka_unit_test(bodies_feel_the_frame),
         cmocka_unit_test(bad_frames_are_refused),
