@@ -1,5 +1,5 @@
-/* The files that a scene is read from besides its own: meshes, pictures, scripts, tables. The parameter
-   tables say which members are paths. Drawback: each call walks to its file. */
+/* The files that a scene is read from besides its own: meshes, pictures, scripts, tables, objects
+   of the tank program. The parameter tables say which members are paths. Drawback: each call walks there. */
 #include "scene/scene.h"
 #include "base/param.h"
 #include <string.h>
@@ -38,6 +38,8 @@ const char *tobi_scene_file(const tobi_scene *scene, int index)
 {
     search s = { index, NULL };
     if (!scene || index < 0) return NULL;
+    for (size_t k = 0; k < json_array_size(scene->object_files); k++)
+        look_at(&s, json_string_value(json_array_get(scene->object_files, k)));
     for (int k = 0; k < scene->body_count; k++) {
         const tobi_scene_body *body = &scene->bodies[k];
         look_in(&s, &tobi_body_table, &body->def);

@@ -317,7 +317,8 @@ static tobi_status parse_source(tobi_scene *scene, tobi_source *source,
         status = tobi_import_translate(source, &scene->texts, scene->directory, &scene->import_table,
                                        &scene->stand_ins);
     else if (tank)
-        status = tobi_import_translate_tank(source, &scene->texts, scene->directory, &scene->import_table);
+        status = tobi_import_translate_tank(source, &scene->texts, scene->directory, &scene->import_table,
+                                            &scene->object_files);
     scene->import_program = tank ? "the tank program" : "the Taichi program";
     scene->root = json_incref(source->root);
     if (status == TOBI_OK) TOBI_TRY(tobi_override_apply(source, overrides, err));
@@ -440,6 +441,7 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene->method_def);
     tobi_texts_free(&scene->texts);
     json_decref(scene->stand_ins);
+    json_decref(scene->object_files);
     json_decref(scene->root);
     tobi_source_clear(&scene->source);
     free(scene->directory);

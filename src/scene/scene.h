@@ -76,6 +76,7 @@ struct tobi_scene {
     char *import_table;            /* what old keys became; NULL: it was native   */
     const char *import_program;    /* whose scene it was                          */
     json_t *stand_ins;             /* of a translated scene, see import.h         */
+    json_t *object_files;          /* the same                                    */
     tobi_reference_def *references;
     int reference_count;
 };

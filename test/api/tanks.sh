@@ -173,6 +173,8 @@ check "a scene beside the setting" grep -q "# Translated from setting.json, a sc
 expect 1 "case/scene.json exists" import case
 expect 0 "" import case/setting.json --out case/other.json --quiet
 expect 0 "" check case/other.json
+expect 1 "case/tank.json: is what the scene is read from" import case --out case/tank.json --force
+check "the object is as it was" grep -q RigidBody case/tank.json
 rm obj/water.obj
 expect 1 'cannot find "/Users/x/code/../obj/water.obj"' import case --force
 

@@ -80,10 +80,11 @@ tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const 
 tobi_status tobi_import_translate_cut(tobi_source *source, tobi_texts *texts, const char *directory,
                                       char **table);
 
-/* tank.c: the same for a setting.json of the tank program and the object files that it names. */
+/* tank.c: the same for a setting.json of the tank program and the object files that it names. *object_files:
+   their paths, owned by the caller. */
 int tobi_import_tank_applies(const json_t *root);
 tobi_status tobi_import_translate_tank(tobi_source *source, tobi_texts *texts, const char *directory,
-                                       char **table);
+                                       char **table, json_t **object_files);
 
 /* Puts value, which it takes over, into an object of the native scene and returns it; NULL without memory,
    which is remembered. A NULL object is fine. */

@@ -23,7 +23,7 @@ typedef struct tank {
     double low[3], high[3];          /* of the domain, without the air above */
     int has_box, closed;
     int cavity;                      /* 1: the domain is the hollow of the first object */
-    json_t *fluids, *bodies, *probes;
+    json_t *fluids, *bodies, *probes, *paths;      /* paths: of the objects' files */
     struct object *objects;          /* object_count, in the order of input_files */
     size_t object_count;
 } tank;
@@ -326,6 +326,7 @@ static void open_object(tank *t, object *o, const json_t *entry)
         t->im.no_memory = 1;
         return;
     }
+    t->im.no_memory |= json_array_append_new(t->paths, json_string(path)) != 0;
     tobi_status status = tobi_plain_read(path, "object", TOBI_SOURCE_LIMIT, &text, &size, &err);
     if (status != TOBI_OK) tobi_source_mistake(setting, &at, "%s", err.text);
     else status = tobi_source_parse(&o->source, path, text, size, setting->report, &err);
@@ -413,7 +414,7 @@ static char *write_closing(const tank *t)
 }
 
 tobi_status tobi_import_translate_tank(tobi_source *source, tobi_texts *texts, const char *directory,
-                                       char **table)
+                                       char **table, json_t **object_files)
 {
     tank t = { .im = { .source = source, .binder = { source, texts, directory, 3 } },
                .directory = directory };
@@ -422,13 +423,15 @@ tobi_status tobi_import_translate_tank(tobi_source *source, tobi_texts *texts, c
     t.fluids = json_array();
     t.bodies = json_array();
     t.probes = json_array();
+    t.paths = *object_files = json_array();
     const int64_t before = tobi_report_total(source->report);
     read_setting(&t);
     read_objects(&t);
     build_setting(&t);
     t.im.closing = tobi_texts_keep(texts, write_closing(&t));
     tobi_status status = tobi_report_total(source->report) > before ? TOBI_INVALID : TOBI_OK;
-    if (t.im.no_memory || texts->failed || !t.im.native || !t.fluids || !t.bodies || !t.probes)
+    if (t.im.no_memory || texts->failed || !t.im.native || !t.fluids || !t.bodies || !t.probes ||
+        !t.paths)
         status = TOBI_NO_MEMORY;
     if (status == TOBI_OK) status = tobi_import_finish(&t.im, table);
     free(t.objects);
