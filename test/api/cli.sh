@@ -282,6 +282,7 @@ for command in --help --version "run --help" "describe scene" "check tank.json" 
 done
 rm -rf full full.json streams
 
+expect 1 "out/tank: holds the results of a run, and no scene.json; \"tobiuo resume out/tank\"" run out/tank
 expect 1 "out/tnak: there is no run to resume (no resolved.json); did you mean out/tank?" resume out/tnak
 expect 1 "out/tnak: there is no run to draw (no history.csv); did you mean out/tank?" plot out/tnak
 mkdir begun && cp out/tank/resolved.json begun
