@@ -3,6 +3,7 @@
    of which files could not be written, 130 after Ctrl-C.
  */
 #pragma once
+#include "energy.h"
 #include "tobiuo/drawing.h"
 #include "tobiuo/run.h"
 #include "tobiuo/scene.h"
@@ -144,13 +145,15 @@ typedef struct watch {
     int64_t steps, unconverged;
     double surface_start;
     tobi_step_info last, worst;      /* worst: the step with the largest residual that did not converge */
+    energy_watch energy;
     body_watch *body;
     int body_count;
 } watch;
 void watch_begin(watch *w, const tobi_world *world);
-void watch_step(watch *w, const tobi_world *world, const tobi_step_info *info);
+/* TOBI_DIVERGED, in words, when liquid and solids have more energy than there ever was. */
+tobi_status watch_step(watch *w, const tobi_world *world, const tobi_step_info *info, tobi_error *err);
 /* Says on stderr what did not go well. */
-void watch_say(const watch *w, const tobi_world *world);
+void watch_say(watch *w, const tobi_world *world);
 void watch_end(watch *w);
 /* cost.c */
 /* "123 MB" or "1.2 GB"; buffer of 32. */

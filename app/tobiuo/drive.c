@@ -47,13 +47,14 @@ static tobi_status step_to_end(tobi_world *world, tobi_run *run, const drive_opt
         if (status == TOBI_STOPPED) break;
         if (status != TOBI_OK) return status;
         say_trouble(run, p);
-        watch_step(w, world, &info);
         progress_step(p, world, &info, o->end);
+        status = watch_step(w, world, &info, err);
+        if (status != TOBI_OK) return status;
     }
     return TOBI_OK;
 }
 
-static void print_end(const drive_options *o, const watch *w, const tobi_world *world, int done,
+static void print_end(const drive_options *o, watch *w, const tobi_world *world, int done,
                       const char *lost, double wall)
 {
     char text[32];
@@ -65,7 +66,7 @@ static void print_end(const drive_options *o, const watch *w, const tobi_world *
     if (!done) printf("go on with: tobiuo resume %s\n", o->dir);
 }
 
-static int end_run(const tobi_world *world, tobi_run *run, const drive_options *o, const watch *w,
+static int end_run(const tobi_world *world, tobi_run *run, const drive_options *o, watch *w,
                    progress *p)
 {
     tobi_error err = { 0 };

@@ -93,6 +93,27 @@ static void judge_losses(const report *r)
             "times.", back);
 }
 
+static void judge_energy(const report *r)
+{
+    const table *t = &r->history;
+    const int time = table_column(t, "time"), kinetic = table_column(t, "kinetic_energy"),
+              potential = table_column(t, "potential_energy"), elastic = table_column(t, "elastic_energy");
+    energy_watch e = { 0 };
+    if (!r->world || time < 0 || kinetic < 0 || potential < 0 || elastic < 0) return;
+    for (size_t k = 0; k < t->rows; k++) {
+        const double one[] = { table_number(t, k, kinetic), table_number(t, k, potential),
+                               table_number(t, k, elastic) };
+        if (k == 0) energy_begin(&e, r->world, one[0], one[1], one[2]);
+        energy_look(&e, table_number(t, k, time), one[0], one[1], one[2]);
+    }
+    if (energy_gained(&e))
+        say(r, WRONG, "energy", "By t = %g s liquid and solids have gained %.3g J from nothing, beside "
+            "%.3g J that they had at the start. Shorter time steps (cfl, time_step) may "
+            "help.", e.time, e.gain, e.start);
+    else if (e.closed)
+        say(r, GOOD, "energy", "Nothing drives the scene, and liquid and solids have gained no energy.");
+}
+
 /* --- how fine the bodies are --- */
 
 /* The liquid is inside: its walls are no fins. */
@@ -213,6 +234,7 @@ void write_trust(const report *r)
     judge_density(r);
     judge_surface(r);
     judge_losses(r);
+    judge_energy(r);
     for (int b = 0; r->world && b < tobi_world_body_count(r->world); b++) judge_body(r, b);
     if (!r->world && json_array_size(report_value(r, "bodies")) > 0)
         say(r, LOOK, "bodies", "Spacings across bodies are not known: %s", r->why);

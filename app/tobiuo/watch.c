@@ -1,5 +1,6 @@
 /* What a run looks at while it steps, and what it says of it at the end: a solver that gave up, a liquid that
-   is none any more, forces that jump from step to step. Drawback: a resumed run knows only its own steps. */
+   is none any more, energy from nothing, forces that jump from step to step. Drawback: a resumed run knows
+   only its own steps. */
 #include "app.h"
 #include <math.h>
 #include <stdlib.h>
@@ -19,6 +20,8 @@ void watch_begin(watch *w, const tobi_world *world)
     w->body_count = tobi_world_body_count(world);
     w->body = calloc((size_t)w->body_count + 1, sizeof *w->body);
     if (!w->body) w->body_count = 0;
+    w->last = *tobi_world_info(world);
+    energy_begin(&w->energy, world, w->last.kinetic_energy, w->last.potential_energy, w->last.elastic_energy);
 }
 
 void watch_end(watch *w)
@@ -43,9 +46,16 @@ static void watch_force(body_watch *b, const tobi_body_info *info)
     b->force += sqrt(size);
 }
 
-void watch_step(watch *w, const tobi_world *world, const tobi_step_info *info)
+static void watch_energy(watch *w, const tobi_step_info *info, double time)
+{
+    energy_look(&w->energy, time, info->kinetic_energy, info->potential_energy, info->elastic_energy);
+}
+
+tobi_status watch_step(watch *w, const tobi_world *world, const tobi_step_info *info, tobi_error *err)
 {
     tobi_body_info body;
+    /* The energies are those of the last output, which came after the step before. */
+    if (info->kinetic_energy != w->last.kinetic_energy) watch_energy(w, info, w->last.time);
     if (w->steps++ == 0) w->surface_start = info->surface_share;
     const int unconverged = !info->density_converged || !info->divergence_converged || info->viscosity_failed;
     w->unconverged += unconverged;
@@ -53,6 +63,12 @@ void watch_step(watch *w, const tobi_world *world, const tobi_step_info *info)
     w->last = *info;
     for (int k = 0; k < w->body_count; k++)
         if (tobi_world_body(world, k, &body) == TOBI_OK) watch_force(&w->body[k], &body);
+    if (!energy_absurd(&w->energy)) return TOBI_OK;
+    snprintf(err->text, sizeof err->text, "the simulation diverged: by t = %g s the kinetic energy of liquid "
+             "and solids has become %.3g J, and all that they and the bodies had at the start was %.3g J; "
+             "shorter time steps (cfl, time_step) may help", w->energy.time, w->energy.kinetic,
+             w->energy.start + w->energy.bodies);
+    return err->status = TOBI_DIVERGED;
 }
 
 static void say_liquid(const watch *w)
@@ -69,7 +85,18 @@ static void say_liquid(const watch *w)
                  100*w->last.surface_share, 100*w->surface_start);
 }
 
-void watch_say(const watch *w, const tobi_world *world)
+static void say_energy(watch *w, const tobi_world *world)
+{
+    const tobi_step_info *end = tobi_world_info(world);
+    watch_energy(w, end, end->time);
+    if (!energy_gained(&w->energy)) return;
+    complain("by t = %g s liquid and solids have gained %.3g J from nothing, beside %.3g J that they had at "
+             "the start (kinetic, potential and elastic energy in history.csv); shorter time steps (cfl, "
+             "time_step) may help",
+             w->energy.time, w->energy.gain, w->energy.start);
+}
+
+void watch_say(watch *w, const tobi_world *world)
 {
     if (w->unconverged)
         complain("the solver did not converge in %lld of %lld steps; the worst was at t = %g s, with a "
@@ -77,6 +104,7 @@ void watch_say(const watch *w, const tobi_world *world)
                  "history.csv)",
                  (long long)w->unconverged, (long long)w->steps, w->worst.time, w->worst.pressure_residual,
                  w->worst.density_iterations + w->worst.divergence_iterations);
+    say_energy(w, world);
     say_liquid(w);
     if (w->last.particles_lost)
         complain("%lld particles left the domain", (long long)w->last.particles_lost);

@@ -186,6 +186,10 @@ TOBI_API tobi_status tobi_world_solid(const tobi_world *world, int solid, tobi_s
 /* The longest step that the stiffness of the solids, or the sound of wcsph, and the speed at the start allow,
    s; 0 = there is neither. */
 TOBI_API double  tobi_world_stable_step(const tobi_world *world);
+/* 1 where nothing gives the world energy after its start: no motion, force or control of a body, no inlet or
+   outlet, line, joint, moving side, surface tension, change of gravity, and gravity only downwards along
+   axes that are not periodic. *bodies (J; may be NULL): what free bodies have now, against domain_min. */
+TOBI_API int     tobi_world_closed(const tobi_world *world, double *bodies);
 TOBI_API int     tobi_world_probe_count(const tobi_world *world);
 TOBI_API tobi_status tobi_world_probe(tobi_world *world, int probe, tobi_probe_info *info, tobi_error *err);
 /* NULL for a number that is no probe; kind may be NULL. */

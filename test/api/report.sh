@@ -40,6 +40,23 @@ END
 # says FILE TEXT: the page's text contains it
 says() { grep -qF -- "$2" <(sed 's/&amp;/\&/g; s/&lt;/</g; s/&gt;/>/g; s/&quot;/"/g' "$1"); }
 
+# --- energy from nothing ---
+cat > dam.json <<'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 1] }, "spacing": 0.04, "end_time": 0.5, "gravity": [0, -9.81],
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [0.52, 0.52] } } ] } ],
+  "output": { "interval": 0.02 } }
+END
+rough="--set method=isph --set cfl=1 --set isph.renormalised=false --set isph.pressure_gradient=plain"
+expect 0 "" run dam.json --out dam --quiet
+PATH=/nonexistent "$program" report dam > out.txt 2> err.txt
+check "a dam gains nothing" says dam/report.html "Nothing drives the scene, and liquid and solids have gained no energy."
+expect 0 "J from nothing, beside 690 J" run dam.json $rough --set isph.surface_height=0 --out dam --quiet --force
+PATH=/nonexistent "$program" report dam --force > out.txt 2> err.txt
+check "a rough isph does" says dam/report.html "from nothing, beside 690 J"
+expect 1 "the kinetic energy of liquid and solids has become" run dam.json --set time_step=0.03 --set speed_limit=1000 \
+    --out dam --quiet --force
+check "that run diverged" grep -q '"outcome": "diverged"' dam/summary.json
+
 # --- without other programs -------------------------------------------------------------------------
 expect 2 "which DIR?" report
 expect 2 "--out is empty" report x --out=
