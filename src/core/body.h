@@ -31,8 +31,8 @@ typedef struct tobi_body_load { double pressure[6], friction[6], edge[3]; } tobi
 enum { TOBI_SYSTEM_LIMIT = 2 };
 
 /* What a point of a body's surface knows of the water: none; particles see it; it faces a side or another
-   body so near that not all of what presses it are particles. */
-enum { TOBI_DRY, TOBI_WET, TOBI_WET_GAP };
+   body so near that not all of what presses it are particles; it lies in another body, out of reach. */
+enum { TOBI_DRY, TOBI_WET, TOBI_WET_GAP, TOBI_BURIED };
 #define TOBI_COVERED 16777216.0
 #define TOBI_OUTERMOST 1e-4
 /* Of the spacing of quadrature points, half that of the particles. */
@@ -87,7 +87,7 @@ typedef struct tobi_body {
     int64_t point_count;             /* quadrature points: neighbouring pieces of one side     */
     double (*point)[3], (*normal)[3], (*point_velocity)[3];
     double (*point_before)[3];       /* velocities by vertex_before, by tobi_body_set_previous_velocities */
-    uint8_t *wet;                    /* [points] TOBI_WET_*                                    */
+    uint8_t *wet;                    /* [points] TOBI_DRY to TOBI_BURIED                       */
     uint32_t *covered;               /* [points] share of a half space of water that particles cover, in
                                         units of 1/TOBI_COVERED                                */
     uint8_t *outermost;              /* [points] 1: the body is rigid, and no part of it lies more than

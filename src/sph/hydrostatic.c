@@ -38,7 +38,7 @@ double sph_still_pressure(const tobi_system *s, const tobi_body *b, int64_t poin
 {
     const tobi_reference *w = &sph_of(s)->reference;
     const double still = tobi_reference_pressure(w, x);
-    if (b->wet[point] == TOBI_DRY || !(w->push > 0)) return 0;
+    if (b->wet[point] == TOBI_DRY || b->wet[point] == TOBI_BURIED || !(w->push > 0)) return 0;
     if (b->wet[point] == TOBI_WET) return still;
     const double deep = tobi_reference_depth(w, x) - sph_of(s)->middle + 0.5*s->smoothing.spacing;
     const double all = w->push*fmax(deep, 0);

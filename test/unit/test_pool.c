@@ -1,6 +1,7 @@
-/* Water at rest among many small boxes of its own density keeps its volume. */
+/* Water at rest among many small boxes of its own density keeps its volume. It presses bodies that reach into
+   each other where it wets them, and nowhere else. */
 #include "calls.h"
-#include "world/world.h"
+#include "scene_text.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -71,8 +72,43 @@ static void keeps_its_volume(void **state)
     }
 }
 
+/* A hull with a fin under it: the fin covers a part of the hull's bottom, the hull the fin's upper end. One
+   method sees it in the fin, another flush with it, and joined bodies as those that stand. */
+static void presses_what_is_wet(void **state)
+{
+    static const struct { const char *method, *joint; double top; } run[] = {
+        {"isph", "", -0.09}, {"dfsph", "", -0.12}, {"wcsph", "", -0.09},
+        {"isph", "'dynamics': 'free', 'locked': 'shift,turn'", -0.09}};
+    static const double PRESSURE = 9810*0.12, FIN = 0.04, WIDTH = 0.3, DEEPER = 9810*0.18;    /* Pa, m */
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        char text[1200];
+        const int joined = *run[k].joint != 0;
+        snprintf(text, sizeof text,
+                 "{'method': '%s', 'dimension': 2, 'spacing': 0.01, 'end_time': 1,"
+                 "'domain': {'min': [-0.4, -0.4], 'max': [0.4, 0.2]},"
+                 "'fluids': [{'name': 'sea', 'fill': [{'box': {'min': [-0.4, -0.4], 'max': [0.4, 0]}}]}],"
+                 "'bodies': [{'name': 'hull', 'box': {'min': [-0.15, -0.12], 'max': [0.15, 0.12]}%s%s},"
+                 "{'name': 'fin', 'box': {'min': [-0.02, -0.18], 'max': [0.02, %g]}%s%s}]%s}",
+                 run[k].method, joined ? ", " : "", run[k].joint, run[k].top, joined ? ", " : "",
+                 run[k].joint, joined ? ", 'joints': [{'name': 'weld', 'kind': 'fixed', 'body': 'fin',"
+                                        " 'to_body': 'hull', 'point': [0, -0.12]}]" : "");
+        for (char *c = text; *c; c++)
+            if (*c == '\'') *c = '"';
+        tobi_world *world;
+        OK(start_scene(text, &world, &err));
+        OK(tobi_world_advance(world, 0.05, NULL, &err));
+        const double hull = world->sim.bodies[0].info.pressure_force[1]/(PRESSURE*(WIDTH - FIN)) - 1;
+        const double fin = world->sim.bodies[1].info.pressure_force[1]/(DEEPER*FIN) - 1;
+        printf("%s: hull off by %.2f %%, fin by %.2f %%\n", run[k].method, 100*hull, 100*fin);
+        if (!(fabs(hull) < 0.015 && fabs(fin) < 0.015)) fail_msg("hull %.4f, fin %.4f", hull, fin);
+        tobi_world_destroy(world);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(keeps_its_volume) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(keeps_its_volume),
+                                        cmocka_unit_test(presses_what_is_wet) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,7 +54,7 @@ static void wet_range(const void *view, int64_t begin, int64_t end, double *tota
         const int64_t q = all - bins[k].item;
         const double *x = b->point[q], *n = b->normal[q];
         if (state->links.first[k] == state->links.first[k + 1]) continue;
-        if (b->covered[q] >= TOBI_COVERED || b->is_absent) continue;
+        if (b->covered[q] >= TOBI_COVERED || b->wet[q] == TOBI_BURIED || b->is_absent) continue;
         if (!(tobi_reference_pressure(&state->reference, x) > 0)) continue;
         if (faces_side(s, x, n) || faces_body(s, k, x, n)) b->wet[q] = TOBI_WET_GAP;
     }

@@ -66,7 +66,8 @@ tobi_status tobi_boundary_grow_rows(void **array, int64_t *capacity, int64_t nee
 #define tobi_boundary_grow(array, capacity, need, err) \
     tobi_boundary_grow_rows((void **)(array), capacity, need, sizeof **(array), err)
 
-/* Puts the points of all bodies into bins, at their present pose; none is wet or covered yet. */
+/* Puts the points of all bodies into bins, at their present pose. None is wet or covered yet; those in
+   another body are buried, and nobody sees them. */
 tobi_status tobi_boundary_place_points(struct tobi_system *s, tobi_error *err);
 
 /* Calls visit for every point of a body in the bins around x, m from the lower corner of the box; stops early

@@ -62,15 +62,45 @@ static int64_t bin_of(const tobi_boundary_links *n, const tobi_boundary_bins *bi
     return bin;
 }
 
+/* Bodies of which one may lie in the other: those that contact does not keep apart. */
+static int may_overlap(const tobi_system *s, int k, int other)
+{
+    const tobi_body *b = s->sim->bodies;
+    const tobi_boundary_bins *x = &sph_of(s)->links.bins[k], *y = &sph_of(s)->links.bins[other];
+    if (k == other || b[other].is_absent) return 0;
+    for (int a = 0; a < s->box.dimension; a++)
+        if (x->lower[a] > y->upper[a] || y->lower[a] > x->upper[a]) return 0;
+    return (b[k].rigid.kind == TOBI_PRESCRIBED && b[other].rigid.kind == TOBI_PRESCRIBED) ||
+           tobi_constraints_join(&s->sim->constraints, k, other);
+}
+
+/* Marks the points of a body that lie in another one, or on its surface from outside. */
+static void bury_points(const tobi_system *s, int k)
+{
+    const tobi_body *b = &s->sim->bodies[k];
+    const double least = 1e-3*s->smoothing.spacing;
+    for (int other = 0; other < s->sim->body_count; other++) {
+        if (!may_overlap(s, k, other)) continue;
+        for (int64_t q = 0; q < b->point_count; q++) {
+            tobi_bvh_hit hit;
+            if (!tobi_bvh_closest(s->sim->bodies[other].bvh, b->point[q], s->smoothing.h, &hit)) continue;
+            if (hit.signed_distance > least) continue;
+            if (hit.signed_distance < -least || vec3_dot(hit.normal, b->normal[q]) < -0.5)
+                b->wet[q] = TOBI_BURIED;
+        }
+    }
+}
+
 static tobi_boundary_point copy_point(const tobi_body *b, int64_t q)
 {
-    tobi_boundary_point p = {.area = b->area[q], .number = (int32_t)q, .outermost = b->outermost[q]};
+    tobi_boundary_point p = {.number = (int32_t)q, .outermost = b->outermost[q]};
+    p.area = b->wet[q] == TOBI_BURIED ? 0 : b->area[q];
     memcpy(p.at, b->point[q], sizeof p.at);
     memcpy(p.normal, b->normal[q], sizeof p.normal);
     return p;
 }
 
-/* Sorts a body's points into its bins. */
+/* Sorts a body's points into its bins; those without an area face nothing. */
 static void fill_bins(const tobi_boundary_links *n, int k, const tobi_body *b)
 {
     const tobi_boundary_bins *bins = &n->bins[k];
@@ -95,9 +125,10 @@ static void prepare_bodies(const void *view, int64_t begin, int64_t end, double 
     (void)totals;
     for (int64_t k = begin; k < end; k++) {
         const tobi_body *b = &s->sim->bodies[k];
-        fill_bins(&sph_of(s)->links, (int)k, b);
         memset(b->wet, 0, (size_t)b->point_count);
         memset(b->covered, 0, (size_t)b->point_count*sizeof *b->covered);
+        bury_points(s, (int)k);
+        fill_bins(&sph_of(s)->links, (int)k, b);
     }
 }
 
