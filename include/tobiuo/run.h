@@ -119,17 +119,19 @@ TOBI_API tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_er
    resumable. */
 TOBI_API void tobi_run_free(tobi_run *run);
 
-/* The tables of a run; probes.csv has columns by the kinds of its sensors. */
+/* The tables of a run; probes.csv has columns by the kinds of its sensors, lines.csv and joints.csv for each
+   line and joint. */
 typedef enum tobi_table {
     TOBI_TABLE_HISTORY, TOBI_TABLE_BODIES, TOBI_TABLE_POINT, TOBI_TABLE_LEVEL, TOBI_TABLE_PATCH,
     TOBI_TABLE_RUN_UP, TOBI_TABLE_FLOW, TOBI_TABLE_VOLUME,     /* in the order of tobi_probe_kind */
-    TOBI_TABLE_SOLIDS
+    TOBI_TABLE_SOLIDS, TOBI_TABLE_LINES, TOBI_TABLE_JOINTS
 } tobi_table;
 typedef struct tobi_column {
     const char *name, *unit;        /* "1": without a unit                                      */
     const char *doc;                /* "": as the column before                                 */
 } tobi_column;
-/* The columns of a table by index, NULL past the end. In probes.csv the names follow the probe's and "_". */
+/* The columns of a table by index, NULL past the end. In probes.csv, lines.csv and joints.csv the names
+   follow that of the probe, line or joint and "_". */
 TOBI_API const tobi_column *tobi_run_column(tobi_table table, int index);
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
-/* The columns of history.csv, bodies.csv, solids.csv and probes.csv: name, unit, value, meaning. One line
-   makes the header, the row, `tobiuo describe history` and docs/tables.md, so that they cannot disagree.
-   Drawback: values are expressions, which mean something only in record/tables.c. */
+/* The columns of history.csv, bodies.csv, solids.csv, probes.csv, lines.csv and joints.csv: name, unit,
+   value, meaning. One line makes the header, the row, `tobiuo describe history` and docs/tables.md, so that
+   they cannot disagree. Drawback: values are expressions, which mean something only in the writers. */
 #pragma once
 
 /* H(name, unit, kind, value, meaning): history.csv. `i` is the last step's info, `s` the sums since the last
@@ -149,3 +149,19 @@
     P("flow", "m3/s", "Volume per second through the rectangle, positive along its normal; in 2-D m2/s.")
 #define VOLUME(P) \
     P("volume", "m3", "Volume of liquid in the box; in 2-D m2.")
+
+/* V(name, unit, value, meaning): lines.csv after time, for each line; `i` is its info. */
+#define LINE(V) \
+    V("tension", "N", i.tension, "Force along the line; positive pulls.") \
+    V("distance", "m", i.distance, "Distance of its ends.")
+
+/* V(name, unit, value, meaning), SOLID of those that a joint in 2-D has not: joints.csv, likewise. */
+#define JOINT(V, SOLID) \
+    V("force_x", "N", i.force[0], "Force of the joint on its body.") \
+    V("force_y", "N", i.force[1], "") \
+    SOLID("force_z", "N", i.force[2], "") \
+    SOLID("moment_x", "N m", i.moment[0], "Moment of the joint on its body.") \
+    SOLID("moment_y", "N m", i.moment[1], "") \
+    V("moment_z", "N m", i.moment[2], "") \
+    V("angle", "degrees", i.angle, "Angle of body against to_body since the start.") \
+    V("gap", "m", i.gap, "Distance of the two points that the joint holds together.")

@@ -1,16 +1,17 @@
 /* joints.csv: of each joint between bodies the force and moment on its body, the angle and the gap, as often
    as the probes are read. Drawback: a mean over one step each, so that impacts scatter. */
+#include "record/columns.h"
 #include "record/record.h"
 #include "world/world.h"
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { VALUES = 8 };
-
-static const struct { const char *name, *unit; int solid; } values[VALUES] = {
-    { "force_x", "N", 0 },  { "force_y", "N", 0 },    { "force_z", "N", 1 },   { "moment_x", "N m", 1 },
-    { "moment_y", "N m", 1 }, { "moment_z", "N m", 0 }, { "angle", "degrees", 0 }, { "gap", "m", 0 },
-};
+#define V(name, unit, value, doc) { name, unit, 0 },
+#define SOLID_V(name, unit, value, doc) { name, unit, 1 },
+static const struct { const char *name, *unit; int solid; } values[] = { JOINT(V, SOLID_V) };
+#undef V
+#undef SOLID_V
+enum { VALUES = sizeof values/sizeof *values };
 
 /* In 2-D a joint has no force along z, and a moment about z alone. */
 static int is_told(const tobi_run *run, int value)
@@ -53,8 +54,9 @@ tobi_status tobi_joints_write(tobi_run *run, double before, tobi_error *err)
     for (int k = 0; k < tobi_world_joint_count(run->world); k++) {
         tobi_joint_info i;
         tobi_world_joint(run->world, k, &i);
-        const double row[VALUES] = { i.force[0], i.force[1], i.force[2], i.moment[0], i.moment[1],
-                                     i.moment[2], i.angle, i.gap };
+#define V(name, unit, value, doc) value,
+        const double row[VALUES] = { JOINT(V, V) };
+#undef V
         for (int v = 0; v < VALUES; v++)
             if (is_told(run, v)) tobi_csv_add_real(run->joints, row[v]);
     }

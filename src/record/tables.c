@@ -105,13 +105,16 @@ static const tobi_column solid[] = {
 static const tobi_column point[] = { POINT(P) }, level[] = { LEVEL(P) }, patch[] = { PATCH(P) },
     run_up[] = { RUN_UP(P) }, flow[] = { FLOW(P) }, volume[] = { VOLUME(P) };
 #undef P
+#define V(name, unit, value, doc) { name, unit, doc },
+static const tobi_column line[] = { LINE(V) }, joint[] = { JOINT(V, V) };
+#undef V
 
 static const struct { const tobi_column *columns; int count; } tables[] = {
 #define LIST(columns) { columns, (int)(sizeof columns / sizeof *columns) }
     [TOBI_TABLE_HISTORY] = LIST(history), [TOBI_TABLE_BODIES] = LIST(body),
     [TOBI_TABLE_POINT] = LIST(point), [TOBI_TABLE_LEVEL] = LIST(level), [TOBI_TABLE_PATCH] = LIST(patch),
     [TOBI_TABLE_RUN_UP] = LIST(run_up), [TOBI_TABLE_FLOW] = LIST(flow), [TOBI_TABLE_VOLUME] = LIST(volume),
-    [TOBI_TABLE_SOLIDS] = LIST(solid),
+    [TOBI_TABLE_SOLIDS] = LIST(solid), [TOBI_TABLE_LINES] = LIST(line), [TOBI_TABLE_JOINTS] = LIST(joint),
 #undef LIST
 };
 

@@ -37,5 +37,9 @@ refuse 'weight: is 0 N/m, a catenary has a weight' lines.chain.weight=0
 refuse 'damping: is of springs and ropes' lines.chain.damping=1
 refuse 'weight: is of a catenary' lines.spring.weight=1
 refuse 'rests: is of a catenary' lines.spring.rests=true
+expect 0 "" describe lines
+check "describe names the columns" grep -q "^  distance " out.txt
+check "and the table" grep -q "The columns of lines.csv for each line" out.txt
+
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

@@ -105,17 +105,11 @@ static const char sensors[] =
     "not due.\n\n"
     "| kind | column | unit | meaning |\n|---|---|---|---|\n";
 
-/* Its names are made of those of the scene, as the writers in record/ have it. */
 static const char joined[] =
     "\n## lines.csv and joints.csv\n\n"
-    "The first column is `time [s]`. The others begin with the name of the line or joint.\n\n"
-    "| column | unit | meaning |\n|---|---|---|\n"
-    "| `LINE_tension` | N | Force along the [line](lines.md); positive pulls. |\n"
-    "| `LINE_distance` | m | Distance of its ends. |\n"
-    "| `JOINT_force_x`, `_y`, `_z` | N | Force of the [joint](joints.md) on its `body`. |\n"
-    "| `JOINT_moment_x`, `_y`, `_z` | N m | Moment of the joint on its `body`. |\n"
-    "| `JOINT_angle` | degrees | Angle of `body` against `to_body` since the start. |\n"
-    "| `JOINT_gap` | m | Distance of the two points that the joint holds together. |\n";
+    "The first column is `time [s]`. The others begin with the name of the\n"
+    "[line](lines.md) or [joint](joints.md).\n\n"
+    "| column | unit | meaning |\n|---|---|---|\n";
 
 static const struct { const char *topic, *file, *doc; tobi_table table; } tables[] = {
     { "history", "history.csv", "The columns of history.csv: a row per output.", TOBI_TABLE_HISTORY },
@@ -133,6 +127,9 @@ static const struct { const char *topic, *file, *doc; tobi_table table; } tables
       TOBI_TABLE_FLOW },
     { "probes", "probes.csv", "The columns of probes.csv for a probe of kind volume: NAME_volume.",
       TOBI_TABLE_VOLUME },
+    { "lines", "lines.csv", "The columns of lines.csv for each line: NAME_tension, ...", TOBI_TABLE_LINES },
+    { "joints", "joints.csv", "The columns of joints.csv for each joint: NAME_force_x, ...",
+      TOBI_TABLE_JOINTS },
 };
 enum { TABLES = sizeof tables/sizeof *tables };
 
@@ -178,24 +175,26 @@ int tobi_tables_find(FILE *out, const char *name)
 
 const char *tobi_tables_topic(int index, const char **doc)
 {
-    static const char *const names[] = { "history", "bodies", "solids", "probes", "tables" };
+    static const char *const names[] = { "history", "bodies", "solids", "probes", "lines", "joints",
+                                         "tables" };
     static const char *const docs[] = { "The columns of history.csv, with units.", "Those of bodies.csv.",
-                                        "Those of solids.csv.",
-                                        "Those of probes.csv.",
+                                        "Those of solids.csv.", "Those of probes.csv.",
+                                        "Those of lines.csv.", "Those of joints.csv.",
                                         "The page of all columns, in Markdown (docs/tables.md)." };
-    if (index < 0 || index >= 5) return NULL;
+    if (index < 0 || index >= (int)(sizeof names/sizeof *names)) return NULL;
     *doc = docs[index];
     return names[index];
 }
 
-/* Components of a vector share a row: `position_x`, `_y`, `_z`. Of sensors, the kind stands in front. */
-static void write_rows(FILE *out, tobi_table table, const char *kind)
+/* Components of a vector share a row: `position_x`, `_y`, `_z`. Of sensors, the kind stands in front. prefix:
+   of the columns, "P_". */
+static void write_rows(FILE *out, tobi_table table, const char *kind, const char *prefix)
 {
     const tobi_column *c, *next;
     for (int i = 0; (c = tobi_run_column(table, i)); i++) {
         const char *doc = c->doc;
         if (kind) fprintf(out, "| `%s` ", kind);
-        fprintf(out, "| `%s%s`", kind ? "P_" : "", c->name);
+        fprintf(out, "| `%s%s`", prefix, c->name);
         while ((next = tobi_run_column(table, i + 1)) && !*next->doc) {
             fprintf(out, ", `%s`", strrchr(next->name, '_'));
             i++;
@@ -207,7 +206,7 @@ static void write_rows(FILE *out, tobi_table table, const char *kind)
 static void write_table(FILE *out, const char *file, tobi_table table)
 {
     fprintf(out, "\n## %s\n\n| column | unit | meaning |\n|---|---|---|\n", file);
-    write_rows(out, table, NULL);
+    write_rows(out, table, NULL, "");
 }
 
 char *tobi_tables_manual(void)
@@ -222,8 +221,10 @@ char *tobi_tables_manual(void)
     write_table(out, "bodies.csv", TOBI_TABLE_BODIES);
     write_table(out, "solids.csv", TOBI_TABLE_SOLIDS);
     fputs(sensors, out);
-    for (int k = 0; k < 6; k++) write_rows(out, (tobi_table)(TOBI_TABLE_POINT + k), kinds[k]);
+    for (int k = 0; k < 6; k++) write_rows(out, (tobi_table)(TOBI_TABLE_POINT + k), kinds[k], "P_");
     fputs(joined, out);
+    write_rows(out, TOBI_TABLE_LINES, NULL, "LINE_");
+    write_rows(out, TOBI_TABLE_JOINTS, NULL, "JOINT_");
     int failed = ferror(out);
     if (fclose(out) == 0 && !failed) return text;
     free(text);
