@@ -4,6 +4,7 @@
    let the liquid on both sides see each other. */
 #include "mpm/liquid.h"
 #include "base/error.h"
+#include "mpm/contact/sides.h"
 #include "mpm/fields.h"
 #include "mpm/particle_fields.h"
 #include <math.h>
@@ -42,6 +43,7 @@ tobi_status mpm_liquid_points(tobi_system *s, tobi_error *err)
     soft->position = s->particles.position;
     soft->velocity = s->particles.velocity;
     soft->size = m->size;
+    soft->touched = mpm_sides_find(s);
     soft->push = mpm_fields_of(&s->particles)->push;
     return TOBI_OK;
 }

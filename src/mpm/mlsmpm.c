@@ -10,6 +10,7 @@
 #include "mpm/material.h"
 #include "mpm/nodes.h"
 #include "mpm/state.h"
+#include "mpm/contact/sides.h"
 #include "mpm/cut/cuts.h"
 #include "mpm/particle_fields.h"
 #include "tobiuo/types.h"
@@ -52,6 +53,7 @@ static void add_planes(const tobi_system *s, int keep, mpm_view *v)
             const int kind = side ? def->wall_max[a] : def->wall_min[a];
             if (kind == TOBI_WALL_OPEN || kind == TOBI_WALL_PERIODIC) continue;     /* nobody gets there */
             v->held |= keep << (2*a + side);
+            if (v->touched >> (2*a + side) & 1) continue;
             mpm_plane *p = &v->plane[v->plane_count++];
             const double *velocity = side ? def->wall_velocity_max[a] : def->wall_velocity_min[a];
             memset(p, 0, sizeof *p);
@@ -227,9 +229,12 @@ static tobi_status sort_particles(tobi_system *s, mlsmpm *m, double *clock, tobi
         TOBI_TRY(mpm_grid_restore(&m->grid, &s->particles, &s->sim->exec, err));
     }
     m->fresh = stale || !m->built;
-    if (m->fresh)
+    if (m->fresh) {
+        m->view.touched = mpm_sides_find(s);
+        add_planes(s, m->def.leaving == TOBI_KEEP, &m->view);
         for (int64_t k = 0; k < m->grid.patch_count; k++)
             m->grid.patch[k].planes = meets_planes(s, m, &m->grid.patch[k]);
+    }
     if (m->blades) {
         const tobi_status status = find_cuts(s, m, stale, err);
         if (status != TOBI_OK) m->memory.age = SORT_AGE;  /* there may be no room left for the blocks */

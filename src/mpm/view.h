@@ -111,5 +111,6 @@ typedef struct mpm_view {
     int    plane_count;
     mpm_plane plane[MPM_PLANES];
     double size[3];                    /* m, of the domain                                         */
+    int    touched;                    /* bit 2 axis + side: particles touch that side, nodes do not  */
     int    held;                       /* bit 2 axis + side: that side keeps particles inside      */
 } mpm_view;

@@ -17,7 +17,7 @@ static const double LOOK = 2.5, LIQUID = 1.1, COVER = 0.75;
 /* Marks at most: per point of a solid, and besides. */
 static const double MARKS_EACH = 8, MARKS = 1e6;
 
-/* Takes the pressure from what touches a side of the domain: no liquid is between. The layers before the
+/* Takes the pressure from what started at a side of the domain: no liquid is between. The layers before the
    side have one spacing of the solid each; the first has the force. */
 static void take_off_at_sides(const tobi_system *s, int64_t point, double force[3])
 {
@@ -26,6 +26,7 @@ static void take_off_at_sides(const tobi_system *s, int64_t point, double force[
     const tobi_double3 p = soft->position[point];
     for (int a = 0; a < s->box.dimension; a++)
         for (int upper = 0; upper < 2 && !s->box.periodic[a]; upper++) {
+            if (soft->touched >> (2*a + upper) & 1) continue;
             double at[3] = { p.x, p.y, p.z };
             const double gap = upper ? s->box.size[a] - at[a] : at[a], share = 1 - fabs(gap/d - 0.5);
             if (!(share > 0)) continue;

@@ -481,33 +481,77 @@ static void a_slab_hits_a_soft_ceiling(void **state)
     }
 }
 
-/* m: how far a block of 0.1 m, soft or rigid, rises in still water in 0.2 s. */
-static double find_rise(const char *method, double density, int soft)
+/* A block of 0.1 m, soft or rigid, in still water, from a height above the floor. */
+static tobi_world *make_block(const char *method, double density, int soft, double low, const char *floor)
 {
-    static const char box[] = "\"box\": { \"min\": [0.2, 0.1], \"max\": [0.3, 0.2] }",
-                      same[] = "{ \"name\": \"block\", \"density\":";
-    char text[1000], block[300];
-    double height[2];
+    char text[1000], block[300], box[100];
+    static const char same[] = "{ \"name\": \"block\", \"density\":";
     tobi_world *world;
+    snprintf(box, sizeof box, "\"box\": { \"min\": [0.2, %g], \"max\": [0.3, %g] }", low, low + 0.1);
     snprintf(block, sizeof block,
              soft ? "\"solids\": [ %s %g, \"youngs_modulus\": 1e6, \"fill\": [ { %s } ] } ]"
                   : "\"bodies\": [ %s %g, \"dynamics\": \"free\", %s } ]", same, density, box);
     snprintf(text, sizeof text,
              "{ \"method\": \"%s\", \"dimension\": 2, \"spacing\": 0.0125, \"end_time\": 1,"
-             "\"gravity\": [0, -9.81], \"domain\": { \"min\": [0, 0], \"max\": [0.5, 0.5] }, %s,"
-             "\"fluids\": [ { \"name\": \"water\","
-             "\"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [0.5, 0.45] } } ] } ] }", method, block);
+             "\"gravity\": [0, -9.81], \"domain\": { \"min\": [0, 0], \"max\": [0.5, 0.5],"
+             "\"walls\": { \"y\": [\"%s\", \"slip\"] } }, %s, \"fluids\": [ { \"name\": \"water\","
+             "\"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [0.5, 0.45] } } ] } ] }", method, floor,
+             block);
     OK(start_scene(text, &world, &err));
-    for (int k = 0; k < 2; k++) {
-        tobi_solid_info solid = { 0 };
-        tobi_body_info body = { 0 };
-        if (soft) tobi_world_solid(world, 0, &solid);
-        else tobi_world_body(world, 0, &body);
-        height[k] = soft ? solid.centre[1] : body.position[1];
-        if (k == 0) OK(tobi_world_advance(world, 0.2, NULL, &err));
+    return world;
+}
+
+static double height_of(const tobi_world *world, int soft)
+{
+    tobi_solid_info solid = { 0 };
+    tobi_body_info body = { 0 };
+    if (soft) tobi_world_solid(world, 0, &solid);
+    else tobi_world_body(world, 0, &body);
+    return soft ? solid.centre[1] : body.position[1];
+}
+
+/* m: how far it rises in 0.2 s. */
+static double find_rise(const char *method, double density, int soft)
+{
+    tobi_world *world = make_block(method, density, soft, 0.1, "slip");
+    const double before = height_of(world, soft);
+    OK(tobi_world_advance(world, 0.2, NULL, &err));
+    const double rise = height_of(world, soft) - before;
+    tobi_world_destroy(world);
+    return rise;
+}
+
+/* Spacings between it and the floor after 0.4 s, and the least before; *time: when one is left, s. */
+static double find_gap(const char *method, int soft, const char *floor, double *least, double *time)
+{
+    tobi_world *world = make_block(method, 2000, soft, 0.05, floor);
+    double gap = *least = 4;
+    *time = 0;
+    for (int k = 1; k <= 40; k++) {
+        OK(tobi_world_advance(world, 0.01*k, NULL, &err));
+        gap = (height_of(world, soft) - 0.05)/0.0125;
+        *least = fmin(*least, gap);
+        if (*time == 0 && gap < 1) *time = 0.01*k;
     }
     tobi_world_destroy(world);
-    return height[1] - height[0];
+    return gap;
+}
+
+/* Nodes at the floor stopped it a cell above, as if water stood there (decision 113). By isph it bounces. */
+static void a_soft_block_sinks_to_the_floor(void **state)
+{
+    static const char *const floors[] = { "slip", "no-slip", "separate" };
+    double time[2], least;
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        const double rigid = find_gap(methods[k], 0, "slip", &least, time);
+        const double soft = find_gap(methods[k], 1, "slip", &least, &time[1]);
+        print_message("%s: %.2f spacings are left, at least %.2f, %.2f below a rigid one; one is after "
+                      "%.2f s, %.2f s\n", methods[k], soft, least, rigid, time[1], time[0]);
+        assert_true(least > -0.1 && (k < 2 ? soft : least) < fmax(rigid, 0) + 0.5);
+        assert_true(fabs(time[1]/time[0] - 1) < 0.3);
+        assert_true(find_gap("dfsph", 1, floors[k], &least, time) < 0.5 && least > -0.1);
+    }
 }
 
 /* Particles under the pressure of the depth held it back: it rose a third as far (decision 112). */
@@ -542,6 +586,7 @@ int main(void)
         cmocka_unit_test(water_weighs_on_a_soft_floor),
         cmocka_unit_test(a_slab_hits_a_soft_ceiling),
         cmocka_unit_test(a_soft_block_rises_as_a_rigid_one),
+        cmocka_unit_test(a_soft_block_sinks_to_the_floor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

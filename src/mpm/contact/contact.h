@@ -83,6 +83,8 @@ tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, double
    normal part is kept in velocity.w, -N, by whoever moves the particles. */
 tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_body *b,
                               const tobi_contact_step *step, tobi_exec *x, tobi_error *err);
+/* Room for so many in the list, and for their shifts; what is listed stays. */
+tobi_status tobi_contact_reserve(tobi_contacts *c, int64_t count, tobi_error *err);
 /* Adds a piece of a blade's edge to the list; full: the share of it that lies in material. */
 tobi_status tobi_contact_add_edge(tobi_contacts *c, tobi_body *b, const tobi_blade_piece *piece, double full,
                                   const tobi_contact_step *step, tobi_error *err);

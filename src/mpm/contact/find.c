@@ -504,8 +504,15 @@ static void search(tobi_contacts *c, struct tobi_contact_candidates *near, const
     }
 }
 
-static tobi_status make_room(tobi_contacts *c, int64_t count, tobi_error *err)
+tobi_status tobi_contact_reserve(tobi_contacts *c, int64_t count, tobi_error *err)
 {
+    const int64_t shifts = c->shift_count + count;
+    if (shifts > c->shift_room) {
+        tobi_shift *more = realloc(c->shift, (size_t)(shifts + shifts/4)*sizeof *more);
+        if (!more) return fail_memory(shifts, err);
+        c->shift = more;
+        c->shift_room = shifts + shifts/4;
+    }
     if (count <= c->room) return TOBI_OK;
     int64_t room = count + count/4 + 1024, parts = count_chunks(room);
     tobi_contact *list = realloc(c->list, (size_t)room*sizeof *list);
@@ -514,17 +521,6 @@ static tobi_status make_room(tobi_contacts *c, int64_t count, tobi_error *err)
     if (partial) c->partial = partial;
     if (!list || !partial) return fail_memory(room, err);
     c->room = room;
-    return TOBI_OK;
-}
-
-static tobi_status reserve_shifts(tobi_contacts *c, tobi_error *err)
-{
-    int64_t need = c->shift_count + c->count;
-    if (need <= c->shift_room) return TOBI_OK;
-    tobi_shift *more = realloc(c->shift, (size_t)(need + need/4)*sizeof *more);
-    if (!more) return fail_memory(need, err);
-    c->shift = more;
-    c->shift_room = need + need/4;
     return TOBI_OK;
 }
 
@@ -553,9 +549,8 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
     find_pose(b, step, &at);
     tobi_blade_update(b, step->dimension);
     TOBI_TRY(find_candidates(c, near, &at, p, x, err));
-    TOBI_TRY(make_room(c, (count_chunks(near->count) + 1)*TOBI_BLOCK, err));
+    TOBI_TRY(tobi_contact_reserve(c, (count_chunks(near->count) + 1)*TOBI_BLOCK, err));
     search(c, near, &at, p, x);
-    TOBI_TRY(reserve_shifts(c, err));
     memcpy(c->velocity, b->rigid.velocity, sizeof c->velocity);
     memcpy(c->spin, b->rigid.angular_velocity, sizeof c->spin);
     return TOBI_OK;
@@ -577,7 +572,7 @@ static const tobi_edge_foot *find_foot(tobi_body *b, const tobi_blade_piece *pie
 tobi_status tobi_contact_add_edge(tobi_contacts *c, tobi_body *b, const tobi_blade_piece *piece, double full,
                                   const tobi_contact_step *step, tobi_error *err)
 {
-    TOBI_TRY(make_room(c, c->count + 1, err));
+    TOBI_TRY(tobi_contact_reserve(c, c->count + 1, err));
     tobi_contact *k = &c->list[c->count++];
     *k = (tobi_contact){ .particle = -1 - piece->number,
                          .limit = full*b->edge_resistance*piece->length*step->dt };

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "geom/vec3.h"
 #include "mpm/contact/clamp.h"
+#include "mpm/contact/sides.h"
 #include "mpm/feel.h"
 #include "mpm/spline.h"
 #include <math.h>
@@ -334,17 +335,11 @@ static void know_joints(tobi_contacts *c, tobi_system *s, const tobi_contact_ste
     memcpy(c->spin, velocity + 3, sizeof c->spin);
 }
 
-static tobi_status touch_body(mpm_touch *t, tobi_system *s, tobi_body *b, const mpm_grid *g,
-                              const mpm_view *v, const tobi_contact_step *step, tobi_error *err)
+/* The impulses of all contacts in the list, onto the nodes. */
+static tobi_status answer_contacts(mpm_touch *t, tobi_system *s, tobi_body *b, const mpm_grid *g,
+                                   const mpm_view *v, const tobi_contact_step *step, tobi_error *err)
 {
     tobi_contacts *c = &t->contacts;
-    TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->sim->exec, err));
-    if (b->rigid.kind != TOBI_PRESCRIBED) mpm_clamp_velocity(t->clamp, step->body, c->velocity, c->spin);
-    if (c->count > 0 || b->blade) know_joints(c, s, step);
-    t->edge_first = c->count;
-    t->ways = g->levels > 1 ? 1 << g->levels : 2;
-    if (b->blade && b->edge_resistance > 0 && b->rigid.cut > 0)
-        TOBI_TRY(list_edges(t, c, b, g, v, step, err));
     if (c->count == 0) return TOBI_OK;
     TOBI_TRY(reserve(t, g, c->count, err));
     find_nodes(t, c, g, v, &s->sim->exec);
@@ -363,14 +358,43 @@ static tobi_status touch_body(mpm_touch *t, tobi_system *s, tobi_body *b, const 
     return TOBI_OK;
 }
 
+static tobi_status touch_body(mpm_touch *t, tobi_system *s, tobi_body *b, const mpm_grid *g,
+                              const mpm_view *v, const tobi_contact_step *step, tobi_error *err)
+{
+    tobi_contacts *c = &t->contacts;
+    TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->sim->exec, err));
+    if (b->rigid.kind != TOBI_PRESCRIBED) mpm_clamp_velocity(t->clamp, step->body, c->velocity, c->spin);
+    if (c->count > 0 || b->blade) know_joints(c, s, step);
+    t->edge_first = c->count;
+    t->ways = g->levels > 1 ? 1 << g->levels : 2;
+    if (b->blade && b->edge_resistance > 0 && b->rigid.cut > 0)
+        TOBI_TRY(list_edges(t, c, b, g, v, step, err));
+    return answer_contacts(t, s, b, g, v, step, err);
+}
+
+static tobi_status touch_side(mpm_touch *t, tobi_system *s, int side, const mpm_grid *g, const mpm_view *v,
+                              const tobi_contact_step *step, tobi_error *err)
+{
+    tobi_contacts *c = &t->contacts;
+    tobi_body b;
+    TOBI_TRY(mpm_sides_list(c, s, side, step, &b, err));
+    t->edge_first = c->count;
+    TOBI_TRY(answer_contacts(t, s, &b, g, v, step, err));
+    s->info.contacts += tobi_contact_finish(c, &s->particles, &b, step, &t->far, &t->work, &s->sim->exec);
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] += b.rigid.impulse[a]/step->dt;
+    return TOBI_OK;
+}
+
 tobi_status mpm_touch_bodies(mpm_touch *t, tobi_system *s, const mpm_grid *g, const mpm_view *v,
                              const tobi_contact_step *step, double drift, tobi_error *err)
 {
     t->far = 0;
     t->work = (tobi_contact_work){ 0 };
     s->info.contacts = 0;
-    if (s->sim->body_count == 0) return TOBI_OK;
+    if (s->sim->body_count == 0 && !v->touched) return TOBI_OK;
     TOBI_TRY(tobi_contact_begin(&t->contacts, &s->particles, drift, &s->sim->exec, err));
+    for (int k = 0; k < 2*g->dimension; k++)
+        if (v->touched >> k & 1) TOBI_TRY(touch_side(t, s, k, g, v, step, err));
     for (int k = 0; k < s->sim->body_count; k++) {
         if (s->sim->bodies[k].is_absent) continue;
         tobi_contact_step own = *step;

@@ -14,7 +14,8 @@ its height, mean over the last fifth. **Stiff limit**: the same with 1e8 Pa besi
 ball never grows but for the swelling of the water at the start. **Inside**: no particle of the water is nearer to the
 ball's centre than a spacing less than its radius. **Momentum**: a block of water hits a jelly, no gravity. **Rise**: a block of
 0.2 x 0.2 m and 1e6 Pa is let go 0.2 m above the floor in 0.9 m of water, 2-D; its way in 0.4 s over that of a rigid block, and
-that of one as dense as water.""")
+that of one as dense as water. **Sink**: that block with twice the water's density starts four spacings above the floor; what is left
+after 0.5 s.""")
 
 SIDE, HALF, DEPTH, G = 0.1, 0.05, 0.125, 9.81
 
@@ -93,20 +94,31 @@ case.hold(f"stiff limit: {stiff:.3f} beside {rigid:.3f} of a rigid body", abs(st
 
 
 
-def find_rise(across, density, rigid=False, *options):
-    """Way of a block in 0.4 s, m."""
-    low, high = [0.4, 0.2], [0.6, 0.4]
+def find_heights(across, density, rigid=False, *options, low=0.2, end=0.4):
+    """Of the centre of a block, m, every 0.02 s."""
+    low, high = [0.4, low], [0.6, low + 0.2]
     block = {"name": "block", "density": density}
     owner = {"bodies": [{**block, "dynamics": "free", "friction": "slip", "box": {"min": low, "max": high}}]} if rigid else \
             {"solids": [{**block, "youngs_modulus": 1e6, "fill": [{"box": {"min": low, "max": high}}]}]}
-    label = "_".join([f"rise_{across}_{density}", "rigid" if rigid else "soft", *(o.split("=")[1].strip('"') for o in options)])
+    label = "_".join([f"block_{across}_{density}", "rigid" if rigid else "soft", *(o.split("=")[1].strip('"') for o in options)])
     out = case.run(label, *(word for o in options for word in ("--set", o)), scene=case.write_scene(label, {
-        "dimension": 2, "domain": {"min": [0, 0], "max": [1, 1]}, "gravity": [0, -G], "spacing": 0.2/across, "end_time": 0.4,
+        "dimension": 2, "domain": {"min": [0, 0], "max": [1, 1]}, "gravity": [0, -G], "spacing": 0.2/across, "end_time": end,
         "fluids": [{"name": "water", "density": 1000, "viscosity": 1e-3, "fill": [{"box": {"min": [0, 0], "max": [1, 0.9]}}]}],
-        **owner, "output": {"interval": 0.2, "fields": ["velocity"], "surfaces": False}}))
+        **owner, "output": {"interval": 0.02, "fields": ["velocity"], "surfaces": False}}))
     table = read_table(out / ("bodies.csv" if rigid else "solids.csv"))
-    heights = table["position_y"]
+    return table["position_y"]
+
+
+def find_rise(*words):
+    heights = find_heights(*words)
     return heights[-1] - heights[0]
+
+
+def find_fall(across, rigid, option):
+    """Spacings left below a heavy block, at the end and at least; the time when one is left, s."""
+    d = 0.2/across
+    gaps = [(y - 0.1)/d for y in find_heights(across, 2000, rigid, option, low=4*d, end=0.5)]
+    return gaps[-1], min(gaps), next((0.02*k for k, gap in enumerate(gaps) if gap < 1), math.inf)
 
 
 for method in ("dfsph", "wcsph", *case.pick((), ("isph",))):
@@ -118,6 +130,15 @@ for method in ("dfsph", "wcsph", *case.pick((), ("isph",))):
         case.hold(f"{name} {ratio:.3f}, 1 within 0.4", abs(ratio - 1) <= 0.4)
     drift = find_rise(8, 1000, False, option)*8/0.2
     case.figure(f"{method}, block as dense as water, 8 across: way in spacings", drift, "within 0.1", abs(drift) <= 0.1)
+
+for method in ("dfsph", *case.pick((), ("wcsph", "isph"))):
+    for across in case.pick((8,), (8, 16)):
+        option = f'method="{method}"'
+        (gap, least, time), (rigid, _, other) = (find_fall(across, each, option) for each in (False, True))
+        name = f"{method}, block of twice the water's density, {across} across"
+        case.figure(f"{name}: spacings left, less those of a rigid one", gap - rigid, "<= 0.5", gap <= rigid + 0.5)
+        case.figure(f"{name}: time to one spacing, over that of a rigid one", time/other, "1 within 0.3", abs(time/other - 1) <= 0.3)
+        case.hold(f"{name}: comes to {least:.2f} spacings", -0.2 <= least <= max(rigid, 0) + 0.5)
 
 path = case.write_scene("shot", {
     "domain": {"min": [0, 0, 0], "max": [0.2, 0.2, 0.4]}, "gravity": [0, 0, 0], "spacing": 0.01, "end_time": 0.08,
