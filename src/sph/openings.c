@@ -84,6 +84,25 @@ static double find_pressure(const tobi_system *s, const tobi_opening *o, int64_t
     return fmax(top + density*(along - 0.5*in*in), 0);
 }
 
+double sph_openings_mean_pressure(const tobi_system *s)
+{
+    double sum = 0;
+    int count = 0;
+    for (int k = 0; k < s->sim->opening_count; k++) {
+        if (s->sim->openings[k].gives != TOBI_GIVES_PRESSURE) continue;
+        sum += s->sim->openings[k].pressure;
+        count++;
+    }
+    return count > 0 ? sum/count : 0;
+}
+
+/* Whether liquid goes on beyond an outlet as it came, as in a pipe. Where sound carries the pressure, a
+   buffer that takes more or less than comes is an error of the pressure. */
+static int goes_on(const tobi_system *s, const tobi_opening *o)
+{
+    return o->outlet && o->gives == TOBI_GIVES_PRESSURE && s->method->sound;
+}
+
 static const tobi_opening *opening_of(const tobi_system *s, int64_t i)
 {
     const float w = sph_fields_of(&s->particles)->held[i].w;
@@ -125,6 +144,54 @@ void sph_openings_continue(tobi_system *s, double share)
     if (sph_has_openings(s)) tobi_loop(s->sim->exec.threads, s->particles.count, 512, continue_range, &c);
 }
 
+static double take_normal(const tobi_opening *o, const tobi_float4 *v)
+{
+    double out = 0;
+    for (int a = 0; a < 3; a++) out += (&v->x)[a]*o->normal[a];
+    return out;
+}
+
+/* Gives a velocity another part along the normal. */
+static void set_normal(const tobi_opening *o, tobi_float4 *v, double out)
+{
+    const double more = out - take_normal(o, v);
+    for (int a = 0; a < 3; a++) (&v->x)[a] += (float)(more*o->normal[a]);
+}
+
+/* Where liquid goes on: sums that tell how much faster the free liquid before the buffer is. */
+typedef struct meeting { const tobi_system *s; const tobi_opening *o; float mark; } meeting;
+
+static void meet_range(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const meeting *m = view;
+    const tobi_particles *p = &m->s->particles;
+    const tobi_float4 *held = sph_fields_of(p)->held;
+    for (int64_t i = begin; i < end; i++) {
+        const double x[3] = { p->position[i].x, p->position[i].y, p->position[i].z };
+        double at[3];
+        if (held[i].w != 0 && held[i].w != m->mark) continue;
+        tobi_opening_locate(m->o, x, at);
+        if (!tobi_opening_faces(m->o, at) || fabs(at[0]) > m->s->smoothing.h) continue;
+        totals[held[i].w != 0] += 1;
+        totals[2 + (held[i].w != 0)] += take_normal(m->o, held[i].w != 0 ? &held[i] : &p->velocity[i]);
+    }
+}
+
+/* A step of the buffers, and by how much those gain speed in which liquid goes on, m/s. */
+typedef struct driving { const tobi_system *s; double gain[TOBI_OPENING_LIMIT]; } driving;
+
+static void find_gains(const tobi_system *s, double gain[TOBI_OPENING_LIMIT])
+{
+    for (int k = 0; k < s->sim->opening_count; k++) {
+        const meeting m = { s, &s->sim->openings[k], -(float)(k + 1) };
+        double t[TOBI_TOTALS];
+        gain[k] = 0;
+        if (!goes_on(s, m.o)) continue;
+        tobi_launch(&s->sim->exec, TOBI_HOST(meet_range, 4, 0), &m, 0, s->particles.count, t);
+        if (t[0] > 0 && t[1] > 0) gain[k] = t[2]/t[0] - t[3]/t[1];
+    }
+}
+
 /* A velocity of an outlet's particle: the mean of the free ones around; where there are few, of those held,
    as they were before the step, and `more`. */
 static void follow(const tobi_system *s, const tobi_opening *o, int64_t i, const double more[3])
@@ -132,26 +199,27 @@ static void follow(const tobi_system *s, const tobi_opening *o, int64_t i, const
     const around sum = look_around(s, i);
     const double weight = sum.free + LATE*sum.held;
     tobi_float4 *v = &s->particles.velocity[i];
-    double out = 0;
     if (weight > 0)
         for (int a = 0; a < s->box.dimension; a++)
             (&v->x)[a] = (float)((sum.velocity[a] + LATE*(sum.before[a] + sum.held*more[a]))/weight);
-    for (int a = 0; a < 3; a++) out += (&v->x)[a]*o->normal[a];
+    const double out = take_normal(o, v);
     if (o->gives) return;
     for (int a = 0; a < 3 && out < 0; a++) (&v->x)[a] -= (float)(out*o->normal[a]);
 }
 
 /* In isph an outlet's particles are predicted as the free ones around them are. In the other methods they
    keep their velocities: the operator gives them an acceleration by pressure along the normal alone, which
-   would not balance gravity across it. */
+   would not balance gravity across it. Where liquid goes on they feel, along the normal, the forces besides
+   pressure: with what the whole buffer gains they keep a profile as it was, in a pipe that of friction. */
 static void hold_range(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const tobi_float4 *held = sph_fields_of(&s->particles)->held;
+    tobi_float4 *held = sph_fields_of(&s->particles)->held;
     double pull[3];
     for (int a = 0; a < 3; a++) pull[a] = s->dt*s->sim->def.gravity[a];
     for (int64_t i = begin; i < end; i++) {
         const tobi_opening *o = opening_of(s, i);
+        if (o && goes_on(s, o)) set_normal(o, &held[i], take_normal(o, &s->particles.velocity[i]));
         if (o && o->outlet && sph_of(s)->mirrors) follow(s, o, i, pull);
         else if (o) s->particles.velocity[i] = (tobi_float4){ held[i].x, held[i].y, held[i].z, 0 };
     }
@@ -160,13 +228,17 @@ static void hold_range(const void *view, int64_t begin, int64_t end)
 static void drive_range(const void *view, int64_t begin, int64_t end)
 {
     static const double none[3] = { 0 };
-    const tobi_system *s = view;
+    const driving *d = view;
+    const tobi_system *s = d->s;
     const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t i = begin; i < end; i++) {
         const tobi_opening *o = opening_of(s, i);
         if (!o) continue;
         if (o->outlet) {
             follow(s, o, i, none);
+            if (goes_on(s, o))
+                set_normal(o, &s->particles.velocity[i],
+                           take_normal(o, &f->held[i]) + d->gain[o - s->sim->openings]);
             continue;
         }
         f->accel[i] = (tobi_float4){ 0, 0, 0, 0 };
@@ -179,7 +251,9 @@ void sph_openings_mark(tobi_system *s, sph_view *v)
     const int64_t n = s->particles.count;
     if (!sph_has_openings(s)) return;
     for (int k = 0; k < s->sim->opening_count; k++)
-        for (int a = 0; a < 3; a++) (&sph_of(s)->normal[k].x)[a] = (float)s->sim->openings[k].normal[a];
+        for (int a = 0; a < 4; a++)
+            (&sph_of(s)->normal[k].x)[a] = a < 3 ? (float)s->sim->openings[k].normal[a]
+                                                 : (float)goes_on(s, &s->sim->openings[k]);
     tobi_loop(s->sim->exec.threads, n, 0, mark_range, s);
     tobi_loop(s->sim->exec.threads, n, 512, extend_range, s);
     sph_openings_continue(s, CONTINUE);
@@ -196,8 +270,10 @@ void sph_openings_hold(tobi_system *s)
 
 void sph_openings_drive(tobi_system *s)
 {
-    if (sph_has_openings(s) && sph_of(s)->marked)
-        tobi_loop(s->sim->exec.threads, s->particles.count, 512, drive_range, s);
+    driving d = { .s = s };
+    if (!sph_has_openings(s) || !sph_of(s)->marked) return;
+    find_gains(s, d.gain);
+    tobi_loop(s->sim->exec.threads, s->particles.count, 512, drive_range, &d);
 }
 
 static void hide_range(const void *view, int64_t begin, int64_t end)

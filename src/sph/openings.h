@@ -19,5 +19,7 @@ void sph_openings_hold(tobi_system *s);
 void sph_openings_drive(tobi_system *s);
 /* Ends of buffers are no free surface: takes them out of the depths from which its level is found. */
 void sph_openings_hide_surface(tobi_system *s);
+/* Pa, of the outlets with a pressure, at their centres; 0 without one. */
+double sph_openings_mean_pressure(const tobi_system *s);
 /* Before the first step of liquid without a free surface: it has the mean pressure that outlets give. */
 void sph_openings_start(tobi_system *s);

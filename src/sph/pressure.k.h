@@ -315,11 +315,17 @@ TOBI_FN void sph_center_pressure(const sph_view *v, int64_t i, double *totals)
     v->record[i].w = v->pressure[i];
 }
 
+/* e of eq. (23). */
+TOBI_FN float sph_density_error(const sph_view *v, int64_t i)
+{
+    float e = v->density[i] - 1;
+    return e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : (e < -0.1f ? -0.1f : e);
+}
+
 /* One Jacobi step of the position equation, eq. (23): the potential of the shift. */
 TOBI_FN float sph_relax_value(const sph_view *v, int64_t i)
 {
-    float e = v->density[i] - 1;
-    e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : (e < -0.1f ? -0.1f : e);
+    float e = sph_density_error(v, i);
     return v->diagonal[i] > v->isolated ? v->relaxation*v->inverse_dt*v->inverse_dt*e/v->diagonal[i] : 0;
 }
 

@@ -28,6 +28,14 @@ TOBI_FN void sph_carry(const sph_view *v, int64_t i, double *totals)
     if (!sph_held(v, i)) v->pressure[i] -= (float)(rise + v->dt*sink);
 }
 
+/* What draws the pressure to that of the density, over dp/dt, eq. (21d). */
+TOBI_FN float sph_recovery(const sph_view *v, int64_t i)
+{
+    if (!(v->recovery > 0)) return 0;
+    float asked = (v->pressure[i] - v->recovery_pressure)/(v->exponent*v->stiffness);
+    return v->recovery*(sph_density_error(v, i) - asked);
+}
+
 /* dp/dt = exponent (p + B) C v, eq. (21), which is the Tait equation carried along with the particle.
    The payload of the pressure force adds the damping of sound, eq. (22). A free surface does not pull.
    totals: |C v|, |p|; maximum: |C v|. */
@@ -45,7 +53,8 @@ TOBI_FN void sph_tait_pair(const sph_view *v, int64_t i, const tobi_neighbors *n
 TOBI_FN void sph_tait_finish(const sph_view *v, int64_t i, sph_compression_acc *a, double *totals)
 {
     float rate = sph_compression_value(v, i, a, v->velocity, 1), size = fabsf(rate);
-    float p = v->pressure[i] + v->dt*v->exponent*(v->pressure[i] + v->stiffness)*rate;
+    float change = v->dt*v->exponent*(v->pressure[i] + v->stiffness);
+    float p = v->pressure[i] + change*(rate + sph_recovery(v, i));
     float push = p + v->damping*rate;
     if (v->diagonal[i] <= v->isolated) p = push = 0;
     if (sph_held(v, i)) p = push = v->pressure[i];
@@ -60,9 +69,9 @@ TOBI_FN void sph_tait_finish(const sph_view *v, int64_t i, sph_compression_acc *
     totals[6] = size > totals[6] ? size : totals[6];
 }
 
-/* Payload = the potential of the shift, eq. (23); an inlet's particles have none. */
+/* Payload = the potential of the shift, eq. (23); what is carried has none. */
 TOBI_FN void sph_relax(const sph_view *v, int64_t i, double *totals)
 {
     (void)totals;
-    v->record[i].w = sph_driven(v, i) ? 0 : sph_relax_value(v, i);
+    v->record[i].w = sph_carried(v, i) ? 0 : sph_relax_value(v, i);
 }

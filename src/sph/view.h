@@ -46,7 +46,7 @@ typedef struct sph_view {
     uint8_t *TOBI_RESTRICT surface;           /* 1 at a free surface, SPH_SPARSE, or 0 */
     const uint8_t *TOBI_RESTRICT fluid;
     const tobi_float4 *TOBI_RESTRICT held;    /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none */
-    const tobi_float4 *outlet_normal;         /* of each opening, by |w| - 1 */
+    const tobi_float4 *outlet_normal;         /* of each opening, by |w| - 1; w = 1: sph_carried */
     /* neighbour list */
     const int32_t *TOBI_RESTRICT list;
     const uint32_t *TOBI_RESTRICT list_start;
@@ -96,6 +96,7 @@ typedef struct sph_view {
     float stiffness, exponent;                /* Pa, 1: of the Tait equation            */
     float damping;                            /* Pa s, of sound: pressure per rate of compression */
     float relaxation;                         /* share of the density error shifted away per step */
+    float recovery, recovery_pressure;        /* 1/s; Pa, at which no error is asked for: eq. (21d) */
     float alpha, beta;                        /* conjugate gradient coefficients       */
 } sph_view;
 
@@ -103,6 +104,12 @@ typedef struct sph_view {
    inlet. An outlet leaves the part of x along its normal. */
 TOBI_FN int sph_held(const sph_view *v, int64_t i) { return v->held && v->held[i].w != 0; }
 TOBI_FN int sph_driven(const sph_view *v, int64_t i) { return v->held && v->held[i].w > 0; }
+/* Whether nothing but its velocity moves it: in an inlet, or where liquid leaves as it came. */
+TOBI_FN int sph_carried(const sph_view *v, int64_t i)
+{
+    if (!sph_held(v, i)) return 0;
+    return sph_driven(v, i) || v->outlet_normal[(int)(-v->held[i].w) - 1].w > 0;
+}
 TOBI_FN tobi_float4 sph_take_normal(const sph_view *v, int64_t i, tobi_float4 x)
 {
     const tobi_float4 n = v->outlet_normal[(int)(-v->held[i].w) - 1];

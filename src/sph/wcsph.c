@@ -19,6 +19,8 @@
 static const double PRESSURE_SMOOTHING = 0.25;
 /* Share of the density error that positions give way to, in the same time. */
 static const double RELAXATION = 0.05;
+/* With inlets or outlets, share of the density error that the pressure answers, in the same time. */
+static const double RECOVERY = 0.01;
 
 typedef struct wcsph {
     sph_state common;                            /* comes first */
@@ -85,6 +87,8 @@ static void bind_view(tobi_system *s, wcsph *m)
     v->reference = sph_of(s)->reference;
     v->stiffness = (float)m->def.stiffness;
     v->exponent = (float)m->def.exponent;
+    v->recovery = sph_has_openings(s) ? (float)(RECOVERY*m->sound/d) : 0;
+    v->recovery_pressure = (float)sph_openings_mean_pressure(s);
     v->damping = (float)(m->def.damping*s->fluid[0].density*m->sound*d);
 }
 
@@ -279,6 +283,7 @@ const tobi_method tobi_wcsph = {
     .doc = "Weakly compressible SPH: pressure by the Tait equation, short steps, no solver.",
     .density_ratio = 2,
     .damps_waves = 1,
+    .fills_pipes = 1,
     .params = &tobi_wcsph_table,
     .fields = &sph_field_list,
     .outputs = sph_outputs,

@@ -48,7 +48,7 @@ typedef struct oracle {
     const float *coarse;
     double cells_per_metre[3];
     double tension[2], contact, band_depth;
-    double stiffness, exponent, damping, relaxation;
+    double stiffness, exponent, damping, relaxation, recovery, recovery_pressure;
     double isolated, sheet_limit, surface_gradient, core, push, background;
     tobi_reference reference, reference_before;
 } oracle;
@@ -466,12 +466,21 @@ static void oracle_vorticity(const oracle *o, const row *in, row *out, double *t
 #include "sph_pressure_oracle.h"
 #include "sph_vessel_oracle.h"
 
-/* Eq. (21), (22) of wcsph.md: Tait along the particle, and the damping of sound in the payload. */
+/* e of eq. (23). */
+static double density_error(const row *in, int i)
+{
+    const double e = in[i][RHO] - 1;
+    return e > 0 ? fmin(e, 0.1) : in[i][SURF] > 0 ? 0 : fmax(e, -0.1);
+}
+
+/* Eq. (21), (21d), (22) of wcsph.md: Tait along the particle, and the damping of sound in the payload. */
 static void oracle_tait(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {
         double rate = compression(o, in, i, VEL, in[i][FLUX]);
-        double p = in[i][PRES] + o->dt*o->exponent*(in[i][PRES] + o->stiffness)*rate;
+        double asked = (in[i][PRES] - o->recovery_pressure)/(o->exponent*o->stiffness);
+        double more = o->recovery*(density_error(in, i) - asked);
+        double p = in[i][PRES] + o->dt*o->exponent*(in[i][PRES] + o->stiffness)*(rate + more);
         double push = p + o->damping*rate;
         if (in[i][SURF] > 0) p = fmax(p, fmin(in[i][CAPILLARY], 0));
         if (in[i][SURF] > 0) push = fmax(push, fmin(in[i][CAPILLARY], 0));
@@ -489,8 +498,7 @@ static void oracle_relax(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
     for (int i = 0; i < o->count; i++) {
-        double e = in[i][RHO] - 1;
-        e = e > 0 ? fmin(e, 0.1) : in[i][SURF] > 0 ? 0 : fmax(e, -0.1);
+        double e = density_error(in, i);
         out[i][PAYLOAD] = in[i][DIAG] > o->isolated ? o->relaxation*e/(o->dt*o->dt*in[i][DIAG]) : 0;
     }
 }

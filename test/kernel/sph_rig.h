@@ -99,6 +99,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->isolated = (k->dimension == 3) == (k->support < 2.3) ? 5 : 1.8f;   /* some are below */
     v->core = (float)(0.9*g->c.spacing); v->push = 0.25f; v->background = 30;
     v->stiffness = 2e4f; v->exponent = 7; v->damping = 40; v->relaxation = 0.05f;
+    v->recovery = 30; v->recovery_pressure = 700;
     v->stretch = k->along ? f->stretch : NULL;
     v->shear = f->shear;
     v->near_body = f->near_body; v->last_link = f->last_link; v->full = v->exact = k->along == 1;
@@ -179,6 +180,7 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
     o->core = v->core; o->isolated = v->isolated; o->push = v->push; o->background = v->background;
     o->speed_cap = v->speed_cap;
     o->stiffness = v->stiffness; o->exponent = v->exponent; o->damping = v->damping;
+    o->recovery = v->recovery; o->recovery_pressure = v->recovery_pressure;
     o->relaxation = v->relaxation;
     o->tension[0] = v->tension[0]; o->tension[1] = v->tension[1];
     o->contact = acos(v->contact_cosine); o->band_depth = v->band_depth;

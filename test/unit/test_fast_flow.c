@@ -107,9 +107,10 @@ static void test_full_pipes(void **state)
 {
     static const struct { const char *method, *outlet, *note; } cases[] = {
         { "isph", "", "full pipe gets cavities" }, { "isph", ", \"pressure\": 500", NULL },
+        { "wcsph", ", \"pressure\": 500", NULL },
         { "dfsph", ", \"pressure\": 500", "dfsph crowds or loses liquid" } };
     (void)state;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         char text[2000];
         tobi_error err = { 0 };
         tobi_world *w;
