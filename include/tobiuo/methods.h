@@ -67,6 +67,7 @@ typedef struct tobi_isph_def {
     int    volume_error;              /* tobi_volume_error: what volume_gain corrects                 */
     int    surface_rule;              /* tobi_surface_rule                                            */
     double surface_height;            /* spacings from the outermost particles up to where p = 0      */
+    double filter;                    /* 1, share of the particle-scale motion taken out per step     */
     double xsph;                      /* 1, share of the mean velocity in that of positions           */
 } tobi_isph_def;
 

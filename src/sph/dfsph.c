@@ -284,19 +284,11 @@ static tobi_status classify_vessel(tobi_system *s, dfsph *m, double *clock, tobi
     return TOBI_OK;
 }
 
-/* Share of the shortest wave that the least viscous fluid damps away in dt. */
-static double viscous_share(const tobi_system *s, const dfsph *m, double dt)
-{
-    double least = m->view.kinematic[0];
-    for (int f = 1; f < s->fluid_count; f++) least = fmin(least, m->view.kinematic[f]);
-    return 4*least*s->smoothing.rate*dt;
-}
-
 static void apply_forces(tobi_system *s, dfsph *m, double *clock)
 {
     /* per motion step: a step made short by viscosity or by the user filters less */
     double scale = 2*s->smoothing.rate, dt = fmax(s->dt, m->motion_dt), share = m->def.filter;
-    if (m->view.exact) share = fmax(share - viscous_share(s, m, dt), 0);
+    if (m->view.exact) share = fmax(share - sph_viscous_share(s, &m->view, dt), 0);
     m->view.filter = (float)(share/(dt*scale*scale));
     sph_apply_forces(s, &m->view, m->kernel, clock);
     sph_viscosity_solve(s, &m->view, m->kernel, NULL);

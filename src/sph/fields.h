@@ -3,9 +3,9 @@
 #include "core/particles.h"
 
 /* Scenes with surface tension; liquids with bodies in them; inlets and outlets; several liquids;
-   implicit viscosity. */
+   implicit viscosity; the filter (13b) with a free surface. */
 enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2, SPH_NEED_OPENINGS = 4, SPH_NEED_PHASES = 8,
-       SPH_NEED_IMPLICIT = 16 };
+       SPH_NEED_IMPLICIT = 16, SPH_NEED_FILTER = 32 };
 
 /* Stages of a step: boundaries; density; forces; the pressure by an equation, or by that of state; the
    correction of positions; forces on walls and bodies, new positions. Between steps: a derived output. */
@@ -28,7 +28,8 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
       "from the nearest body seen") \
     X(float,       TOBI_F32, 1, mean,         SPH_SEE | SPH_DERIVE, 0, "Pa", "kernel average of p") \
     X(float,       TOBI_F32, 1, surface_depth,     SPH_SEE, 0, "m", "of the free surface here, 0 = none") \
-    X(tobi_float4, TOBI_F32, 4, moment,       SPH_SEE | SPH_FORCES, SPH_NEED_WETTED, "1/m", "eq. (13b)") \
+    X(tobi_float4, TOBI_F32, 4, moment,       SPH_SEE | SPH_FORCES, \
+      SPH_NEED_WETTED | SPH_NEED_FILTER, "1/m", "eq. (13b)") \
     X(float,       TOBI_F32, 1, target_divergence, SPH_FORCES | SPH_SOLVE, SPH_NEED_WETTED, "1/s", \
       "eq. (10d)") \
     X(float,       TOBI_F32, 1, wetness,      SPH_AFTER_SEEING, 0, "1", "eq. (6b)") \

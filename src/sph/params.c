@@ -135,6 +135,10 @@ static const tobi_param isph_rows[] = {
       .unit = "spacings",
       .doc = "Height above the outermost particles at which the pressure is 0; 0: at these particles, which "
              "is rough." },
+    { .key = "filter", REAL, AT(tobi_isph_def, filter), RANGE(0, 1), .unit = "1", .text = "off",
+      .doc = "Share of particle-scale motion taken out per step, 1 is quietest; linear flows and longer "
+             "waves are left alone. What viscosity takes counts in it. Nothing is taken where densities "
+             "differ." },
     { .key = "xsph", REAL, AT(tobi_isph_def, xsph), RANGE(0, 1), .unit = "1", .text = "off",
       .doc = "XSPH: share of the neighbours' mean velocity in the velocity that moves a particle." },
     { .key = "time_order", INT, AT(tobi_isph_def, time_order), .def = { 2 }, RANGE(1, 2), .unit = "1",

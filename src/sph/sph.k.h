@@ -84,9 +84,9 @@ TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_neighbors
     lane f2 = f*n->r2;
     a->g2 += f*f2;
     a->div += f2;
-    if (!a->due) return;
-    if (v->exact) sph_moments_add(&a->first, f, n);
-    sph_moments_add(&a->second, f*f, n);
+    if (!a->due && !v->blind) return;
+    if (v->blind) sph_moments_add(&a->first, f, n);
+    if (a->due) sph_moments_add(&a->second, f*f, n);
 }
 
 /* c of eq. (13b): M^-1 sum V F x, of size 3/h at most; 0 where M has no inverse. */
@@ -104,15 +104,15 @@ TOBI_FN sph_matrix sph_make_tensor(const sph_view *v, int64_t i, const sph_densi
                                    int open)
 {
     sph_matrix t = {1, 1, 1, 0, 0, 0};
-    if (!v->stretch) return t;
     int walled = share > 0 && (v->full || (v->last_link && v->last_link[i] >= 0)), made = 0;
-    if (v->exact) {
+    if (v->blind) {
         sph_matrix m = sph_moments_sum(&a->first, v->slope);
         sph_matrix b = {0, 0, 0, 0, 0, 0};
         if (v->dimension == 2) m.zz = 1;
-        made = sph_invert(&m, &b) && !open && sph_tilt(&m, &b, v->wall[i], share, &t);
+        made = sph_invert(&m, &b) && v->exact && !open && sph_tilt(&m, &b, v->wall[i], share, &t);
         sph_find_moment(v, i, &b, lane_sum4(a->gx, a->gy, a->gz, lane_set(0)));
     }
+    if (!v->stretch) return t;
     if (!made && walled) t = sph_along_wall(v->wall[i], sph_wall_density(v, share), v->dimension);
     sph_tensor_store(v, i, &t, walled);
     return t;

@@ -87,6 +87,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     /* bodies let go act larger with (7c) beside them than with (7b), decision 28 */
     v->exact = v->full && v->stretch && !tobi_body_any_free(s->sim->bodies, s->sim->body_count) &&
                tobi_system_density_ratio(s) == 1;
+    v->blind = v->exact;
     bind_stage(v, f);
     v->held = sph_of(s)->marked ? f->held : NULL;
     v->outlet_normal = sph_of(s)->normal;
@@ -296,6 +297,13 @@ static void apply_tension(tobi_system *s, sph_view *v, const sph_kernels *k)
     launch(s, v, k->sph_tension, NULL);
 }
 
+double sph_viscous_share(const tobi_system *s, const sph_view *v, double dt)
+{
+    double least = v->kinematic[0];
+    for (int f = 1; f < s->fluid_count; f++) least = fmin(least, v->kinematic[f]);
+    return 4*least*s->smoothing.rate*dt;
+}
+
 /* Eq. (13b); nothing is left for that of (13). */
 static void apply_filter(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
@@ -312,7 +320,7 @@ static int is_viscous(const tobi_system *s, const sph_view *v)
     return most > 0 && !v->implicit;
 }
 
-/* All but the filter of full vessels. */
+/* All but the filter (13b). */
 static void kick(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
     if (!v->implicit) sph_phases_rub(s, v, k);
@@ -331,7 +339,7 @@ void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double 
     sph_stage(s, v, SPH_FORCES);
     if (v->exact) launch(s, v, k->sph_target_divergence, NULL);
     sph_viscosity_begin(s, v, k);
-    if (v->exact) apply_filter(s, v, k);
+    if (v->blind) apply_filter(s, v, k);
     kick(s, v, k);
     sph_openings_hold(s);
     tobi_stage_end(&s->sim->stages, "forces", clock);

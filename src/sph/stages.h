@@ -46,6 +46,8 @@ void sph_set_body_velocities(tobi_system *s, double *clock);
 double sph_explained_head(const tobi_system *s);
 /* The pressure of the last solve for neighbours to read. */
 void sph_show_pressure(tobi_system *s);
+/* Share of the shortest wave that the least viscous fluid damps away in dt, s. */
+double sph_viscous_share(const tobi_system *s, const sph_view *v, double dt);
 /* v += dt (surface tension, gravity, viscosity, filter, friction, lift); v->filter is set. Viscosity and
    friction wait where they are implicit. */
 void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock);

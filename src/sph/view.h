@@ -37,7 +37,7 @@ typedef struct sph_view {
     float *TOBI_RESTRICT mean_pressure, *TOBI_RESTRICT surface_depth, *TOBI_RESTRICT wetness;
     float *TOBI_RESTRICT damped;
     float *TOBI_RESTRICT precondition, *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
-    float *TOBI_RESTRICT target_divergence;   /* it and moment: with `exact`                          */
+    float *TOBI_RESTRICT target_divergence;   /* with `exact`; moment with `blind`                    */
     tobi_float4 *TOBI_RESTRICT moment;
     sph_viscous_fields viscous;
     tobi_float4 *TOBI_RESTRICT phase, *TOBI_RESTRICT interface;   /* NULL with one fluid, phases.k.h */
@@ -59,7 +59,8 @@ typedef struct sph_view {
     float spacing, volume;
     int   dimension;
     int   full;                               /* 1: a vessel without a free surface          */
-    int   exact;                              /* 1: eq. (7c), (10d), (13b): linear flows are exact */
+    int   exact;                              /* 1: eq. (7c), (10d): linear flows are exact        */
+    int   blind;                              /* 1: eq. (13b), a filter that is blind to them      */
     float open_limit;                         /* div x below this: neighbours are missing       */
     float surface_limit;                      /* the same, but never in a full vessel           */
     float sheet_limit;                        /* below this a surface beyond doubt     */

@@ -102,7 +102,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->recovery = 30; v->recovery_pressure = 700;
     v->stretch = k->along ? f->stretch : NULL;
     v->shear = f->shear;
-    v->near_body = f->near_body; v->last_link = f->last_link; v->full = v->exact = k->along == 1;
+    v->near_body = f->near_body; v->last_link = f->last_link; v->full = v->exact = v->blind = k->along == 1;
     v->target_divergence = f->target_divergence; v->moment = f->moment;
     v->normal = f->normal; v->capillary = f->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;

@@ -114,6 +114,7 @@ const tobi_method tobi_eisph = {
     .params = &tobi_eisph_table,
     .smoothing = choose_smoothing,
     .create = create,
+    .needs = sph_needs,
     .max_dt = choose_dt,
     .begin = begin,
     .rough_forces = 1,

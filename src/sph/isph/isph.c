@@ -64,6 +64,12 @@ tobi_status isph_create_state(tobi_system *s, const tobi_isph_def *def, tobi_err
 
 static tobi_status create(tobi_system *s, tobi_error *err) { return isph_create_state(s, s->def, err); }
 
+static unsigned list_needs(const tobi_system *s, int full)
+{
+    const tobi_isph_def *d = s->def;
+    return sph_needs(s, full) | (d->filter > 0 ? SPH_NEED_FILTER : 0);
+}
+
 int isph_list_memory(tobi_system *s, double **values)
 {
     isph *m = s->state;
@@ -125,15 +131,23 @@ static void bind_soft(const tobi_system *s, isph_view *v)
     v->soft_change = (const double (*)[3])q->change;
 }
 
+/* Particle-scale motion makes disorder, and disorder lifts the liquid: decision 117. The filter takes all
+   particles for equally heavy. */
+static void bind(tobi_system *s, isph *m)
+{
+    sph_bind_view(s, &m->view, m->memory.vessel);
+    m->view.blind = m->def.filter > 0 && tobi_system_density_ratio(s) == 1;
+}
+
 static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_error *err)
 {
     const int classified = m->memory.vessel != SPH_VESSEL_UNKNOWN;
     TOBI_TRY(sph_find_neighbors(s, clock, err));
-    sph_bind_view(s, &m->view, m->memory.vessel);
+    bind(s, m);
     TOBI_TRY(sph_classify_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
     if (!classified && s->sim->body_count > 0)       /* all pairs, to be cut again */
         TOBI_TRY(sph_find_neighbors(s, clock, err));
-    sph_bind_view(s, &m->view, m->memory.vessel);
+    bind(s, m);
     m->solver.view.held = NULL;
     m->solver.view.open = m->solver.view.fades = m->memory.vessel != SPH_VESSEL_FULL;
     m->solver.view.motion_dt = fmax(m->motion_dt, s->dt);
@@ -263,6 +277,14 @@ static void expect(tobi_system *s)
     launch(s, m, m->kernel->isph_gravity, NULL);
 }
 
+/* 1/s: of (13b), per step that motion allows. */
+static double choose_filter(const tobi_system *s, const isph *m)
+{
+    const double scale = 2*s->smoothing.rate, dt = fmax(s->dt, m->motion_dt);
+    if (!m->view.blind) return 0;
+    return fmax(m->def.filter - sph_viscous_share(s, &m->view, dt), 0)/(dt*scale*scale);
+}
+
 /* Viscosity, friction and tension are those of the other SPH methods, with gravity, and what walls make of
    it, left out: the images of the pressure equation know that. */
 void isph_forces(tobi_system *s)
@@ -275,6 +297,7 @@ void isph_forces(tobi_system *s)
     if (corrected) launch(s, m, m->kernel->isph_viscosity, NULL);
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     without.acceleration.acts = 0;
+    without.filter = (float)choose_filter(s, m);
     sph_apply_forces(s, &without, m->kernel, &clock);
     if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     isph_bodies_remove_hydrostatic(s);
@@ -427,6 +450,7 @@ const tobi_method tobi_isph = {
     .params = &tobi_isph_table,
     .smoothing = choose_smoothing,
     .create = create,
+    .needs = list_needs,
     .max_dt = isph_choose_dt,
     .begin = isph_begin,
     .fills_pipes = 1,

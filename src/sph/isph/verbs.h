@@ -44,7 +44,7 @@ int64_t isph_count_bytes(const tobi_system *s);
 void isph_free_state(void *state);
 
 #define ISPH_VERBS                                                                                  \
-    .fields = &sph_field_list, .outputs = isph_outputs, .needs = sph_needs, .remember = isph_remember,   \
+    .fields = &sph_field_list, .outputs = isph_outputs, .remember = isph_remember,                        \
     .take_back = isph_take_back, .forces = isph_forces, .solve = isph_solve, .move = isph_move,     \
     .finish = sph_finish, .refresh = isph_refresh, .read = isph_read, .derive = isph_derive,         \
     .measure = isph_measure, .follow_gravity = isph_follow_gravity, .memory = isph_list_memory,      \

@@ -12,7 +12,8 @@ from harness import Case, fit_line, interpolate, mean, read_series, read_table, 
 case = Case("isph", "Incompressible SPH", """
 `"method": "isph"` with its defaults (support 2.5 d) beside dfsph with its own, where both are named; 2-D, slip.
 Columns, 30 d wide and 10 to 100 d deep, start on a lattice without pressure. Floor: the force on it against the weight,
-mean over the last half. Level: rise of the centre of mass, doubled. Iterations: of the first step, from no pressure to
+mean over the last half. Level: rise of the centre of mass, doubled. Shaken: particles start with random velocities, up to so
+much along each axis, without viscosity. Iterations: of the first step, from no pressure to
 a true residual of 1e-6. Dam break: a = n2 = 1 in a box 4 a long, inviscid; front Z against T = t sqrt(g/a) of potential flow
 (dam_break); energy against that of the start. Patch: a square of 1 m turns at 1 rad/s without gravity (A. Colagrossi,
 PhD thesis, Rome 2005), to t omega = 4. Main body: the largest set of particles linked within 1.8 d. Wave and vortex: as
@@ -77,6 +78,37 @@ case.state("column: iterations of cg with Jacobi's preconditioner, the deepest",
 case.plot("Iterations against depth", "layers", "iterations from no pressure to 1e-6",
           [("multigrid", list(iterations), list(iterations.values()), True),
            ("jacobi", list(plain), list(plain.values()), True)])
+SHAKE = str((case.folder/"shake.lua").resolve())
+
+
+def shake(method, deep, speed, **more):
+    """A column whose particles start with random velocities: what remains. Energies are over the potential one."""
+    d = 1/deep
+    flow = {"script": SHAKE, "params": {"speed": speed, "spacing": d}}
+    _, table = scene(f"shaken{deep}_{method}_{speed}{len(more)}", method, d, case.pick(1, 5), [30*d, 1.5],
+                     {"box": {"min": [0, 0], "max": [30*d, 1]}, "flow": flow}, 0.1, **more)
+    energy = [k/table["potential_energy"][0] for k in table["kinetic_energy"]]
+    floor = mean(late(table, "wall_force_ratio")) - 1
+    level = deep*(mean(late(table, "potential_energy"))/(RHO*G*0.5*30*d) - 1)
+    return floor, level, energy
+
+
+for deep, speed in case.pick(((10, 0.1),), ((10, 0.1), (30, 0.1), (100, 0.1), (30, 1.0))):
+    for kind, more in ("", {}), (", filter 1", {"isph": {"filter": 1}}):
+        floor, level, energy = shake("isph", deep, speed, **more)
+        name, most = f"shaken by {speed:g} m/s, {deep} deep{kind}", 0.1*max(deep/30, 1)
+        growth = max(b - a for a, b in zip(energy, energy[1:]))/energy[0]
+        case.figure(f"{name}: force on the floor over the weight, deviation", floor, "within 0.005", abs(floor) <= 0.005)
+        case.figure(f"{name}: level, in spacings", level, f"within {most:.2g}", abs(level) <= most)
+        case.figure(f"{name}: largest growth of the kinetic energy in 0.1 s over the start's", growth, "<= 0.01", growth <= 0.01)
+        case.state(f"{name}: kinetic energy at the end over the start's", energy[-1]/energy[0])
+    # Without the filter it may grow by half in 0.1 s.
+    case.hold(f"{name}: kinetic energy never above the start's ({max(energy)/energy[0]:.3f})", max(energy) <= energy[0])
+    if not case.smoke:
+        floor, level, energy = shake("dfsph", deep, speed)
+        case.state(f"dfsph, shaken by {speed:g} m/s, {deep} deep: force on the floor over the weight, deviation", floor)
+        case.state(f"dfsph, shaken by {speed:g} m/s, {deep} deep: level, in spacings", level)
+        case.state(f"dfsph, shaken by {speed:g} m/s, {deep} deep: kinetic energy at the end over the start's", energy[-1]/energy[0])
 others = {name: count_iterations(30, name, solver=name) for name in solvers}
 shown = ", ".join(f"{name}: {count:.0f}" for name, count in others.items())
 case.hold(f"column, 30 deep: every solver converges ({shown})", max(others.values()) <= 20)
