@@ -111,7 +111,8 @@ static void judge_energy(const report *r)
             "%.3g J that they had at the start. Shorter time steps (cfl, time_step) may "
             "help.", e.time, e.gain, e.start);
     else if (e.closed)
-        say(r, GOOD, "energy", "Nothing drives the scene, and liquid and solids have gained no energy.");
+        say(r, GOOD, "energy", "Nothing drives the scene. The most that liquid and solids have gained is "
+            "%.2g %% of their energy.", 100*e.gain/e.start);
 }
 
 /* --- how fine the bodies are --- */

@@ -2,6 +2,7 @@
    stop what is a cell away from it: beside a liquid that is a layer of liquid which nothing holds there
    (decision 113). Drawback: one side is either touched or obeyed by nodes, for all solids. */
 #include "mpm/contact/sides.h"
+#include "exec/exec.h"
 #include "mpm/particle_fields.h"
 #include <math.h>
 #include <string.h>
@@ -14,28 +15,30 @@ static int kind_of(const tobi_system *s, int side)
     return side%2 ? s->sim->def.wall_max[side/2] : s->sim->def.wall_min[side/2];
 }
 
-/* Bit 2 axis + side: a particle of a solid starts nearer than a spacing to that side. */
-static int find_started(const tobi_system *s)
+/* totals[2 axis + side]: particles that started nearer than a spacing to that side. */
+static void find_started(const void *view, int64_t begin, int64_t end, double *totals)
 {
+    const tobi_system *s = view;
     const mpm_fields *f = mpm_fields_of(&s->particles);
-    int started = 0;
-    for (int64_t i = 0; i < s->particles.count; i++)
+    for (int64_t i = begin; i < end; i++)
         for (int a = 0; a < s->box.dimension; a++) {
             const double x = (&f->rest[i].x)[a];
-            if (x < s->smoothing.spacing) started |= 1 << 2*a;
-            if (s->box.size[a] - x < s->smoothing.spacing) started |= 2 << 2*a;
+            totals[2*a] += x < s->smoothing.spacing;
+            totals[2*a + 1] += s->box.size[a] - x < s->smoothing.spacing;
         }
-    return started;
 }
 
 int mpm_sides_find(const tobi_system *s)
 {
+    double started[TOBI_TOTALS];
     int touched = 0;
+    if (s->sim->soft.solids != s) return 0;
+    tobi_launch(&s->sim->exec, TOBI_HOST(find_started, 6, 0), s, 0, s->particles.count, started);
     for (int k = 0; k < 2*s->box.dimension; k++) {
         const int kind = kind_of(s, k);
-        touched |= (kind != TOBI_WALL_OPEN && kind != TOBI_WALL_PERIODIC) << k;
+        touched |= (kind != TOBI_WALL_OPEN && kind != TOBI_WALL_PERIODIC && started[k] == 0) << k;
     }
-    return s->sim->soft.solids == s ? touched & ~find_started(s) : 0;
+    return touched;
 }
 
 /* A side is a body that stands still, or moves along itself. */

@@ -79,6 +79,7 @@ static void bury_points(const tobi_system *s, int k)
 {
     const tobi_body *b = &s->sim->bodies[k];
     const double least = 1e-3*s->smoothing.spacing;
+    if (b->rigid.kind != TOBI_PRESCRIBED && s->sim->constraints.count == 0) return;
     for (int other = 0; other < s->sim->body_count; other++) {
         if (!may_overlap(s, k, other)) continue;
         for (int64_t q = 0; q < b->point_count; q++) {

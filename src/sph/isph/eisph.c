@@ -5,6 +5,7 @@
 #include "sph/isph/isph.h"
 #include "sph/isph/sweeps.h"
 #include "sph/isph/verbs.h"
+#include "sph/openings.h"
 #include <math.h>
 
 /* Most sweeps that the method chooses itself. */
@@ -76,19 +77,6 @@ static void measure_depth(tobi_system *s, isph *m)
     m->memory.depth = fmax(0, t[6] + t[7] - 2*sqrt(size)) + v->spacing;
 }
 
-/* Pa. What the pressure forgets comes back as compression: of a pipe under pressure only the losses may. */
-static double base_pressure(const tobi_system *s)
-{
-    double sum = 0;
-    int count = 0;
-    for (int k = 0; k < s->sim->opening_count; k++) {
-        if (s->sim->openings[k].gives != TOBI_GIVES_PRESSURE) continue;
-        sum += s->sim->openings[k].pressure;
-        count++;
-    }
-    return count > 0 ? sum/count : 0;
-}
-
 static tobi_status begin(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state;
@@ -102,7 +90,8 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     if (m->memory.started == 0) return TOBI_OK;
     m->solver.sweeps.count = count_sweeps(s, m);
     v->volume_gain = d->volume_gain*fmin(s->sim->time*sound(s, m)/(RISE*m->memory.depth), 1);
-    v->base = base_pressure(s);
+    /* what the pressure forgets comes back as compression: of a pipe under pressure only the losses may */
+    v->base = sph_openings_mean_pressure(s);
     v->keep = 1 - FORGET*v->volume_gain*v->dt/v->motion_dt;
     return TOBI_OK;
 }
