@@ -18,6 +18,7 @@ typedef struct tobi_soft {
     const tobi_soft_size *size;
     tobi_float4 *push;               /* N: by the liquid, in the last step, then in this one        */
     struct tobi_overlap *start;      /* where they are, while fluids are placed; else NULL          */
-    int touched;                     /* bit 2 axis + side: solids come to that side through liquid  */
+    const uint8_t *solid;            /* which solid a point is of                                   */
+    const uint8_t *touched;          /* [solids] bit 2 axis + side: it comes to that side through liquid */
     double speed;                    /* m/s, of the fastest point near the liquid                   */
 } tobi_soft;

@@ -72,6 +72,7 @@ TOBI_FN void mpm_apply_planes(const mpm_view *v, const mpm_patch *g, int n, floa
                        dim == 3 ? g->corner[2] + n%4 : 0};
     for (int p = 0; p < v->plane_count; p++) {
         const mpm_plane *plane = &v->plane[p];
+        if (plane->limited && !(g->obey[plane->limited - 1] >> n & 1)) continue;
         double depth = plane->normal[0]*at[0] + plane->normal[1]*at[1] + plane->normal[2]*at[2] -
                        plane->offset*v->inverse_cell;
         if (depth < 1e-6) mpm_apply_plane(plane, u);

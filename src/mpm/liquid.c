@@ -43,7 +43,8 @@ tobi_status mpm_liquid_points(tobi_system *s, tobi_error *err)
     soft->position = s->particles.position;
     soft->velocity = s->particles.velocity;
     soft->size = m->size;
-    soft->touched = mpm_sides_find(s);
+    mpm_sides_find(s, &m->view, m->touched);
+    soft->solid = s->particles.fluid;
     soft->push = mpm_fields_of(&s->particles)->push;
     return TOBI_OK;
 }

@@ -50,16 +50,17 @@ static void add_planes(const tobi_system *s, int keep, mpm_view *v)
     v->plane_count = v->held = 0;
     for (int a = 0; a < s->box.dimension; a++)
         for (int side = 0; side < 2; side++) {
-            const int kind = side ? def->wall_max[a] : def->wall_min[a];
+            const int kind = side ? def->wall_max[a] : def->wall_min[a], bit = 1 << (2*a + side);
             if (kind == TOBI_WALL_OPEN || kind == TOBI_WALL_PERIODIC) continue;     /* nobody gets there */
-            v->held |= keep << (2*a + side);
-            if (v->touched >> (2*a + side) & 1) continue;
+            if (keep) v->held |= bit;
+            if (!(v->obeyed & bit)) continue;
             mpm_plane *p = &v->plane[v->plane_count++];
             const double *velocity = side ? def->wall_velocity_max[a] : def->wall_velocity_min[a];
             memset(p, 0, sizeof *p);
             p->normal[a] = side ? -1 : 1;
             p->offset = side ? -s->box.size[a] : 0;
             p->kind = kind;
+            p->limited = v->touched & bit ? 1 + a : 0;
             p->friction = (float)def->friction;
             for (int k = 0; k < 3; k++) p->velocity[k] = (float)velocity[k];
         }
@@ -230,7 +231,7 @@ static tobi_status sort_particles(tobi_system *s, mlsmpm *m, double *clock, tobi
     }
     m->fresh = stale || !m->built;
     if (m->fresh) {
-        m->view.touched = mpm_sides_find(s);
+        mpm_sides_find(s, &m->view, m->touched);
         add_planes(s, m->def.leaving == TOBI_KEEP, &m->view);
         for (int64_t k = 0; k < m->grid.patch_count; k++)
             m->grid.patch[k].planes = meets_planes(s, m, &m->grid.patch[k]);
@@ -243,6 +244,7 @@ static tobi_status sort_particles(tobi_system *s, mlsmpm *m, double *clock, tobi
     m->built = 1;
     mpm_grid_bind(&m->grid, &m->view);
     if (m->def.transfer == TOBI_APIC) m->view.old = NULL;
+    mpm_sides_mark(s, &m->grid, &m->view);
     tobi_stage_end(&s->sim->stages, "sort", clock);
     return TOBI_OK;
 }

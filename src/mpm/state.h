@@ -35,6 +35,7 @@ typedef struct mlsmpm {
     const mpm_kernels *kernels;
     mpm_material material[TOBI_SOLID_LIMIT + 1];
     double damping[TOBI_SOLID_LIMIT + 1];
+    uint8_t touched[TOBI_SOLID_LIMIT + 1];   /* bit 2 axis + side: its particles touch that side   */
     double sound;                      /* m/s, the fastest of the materials                        */
     double liquid_sound;               /* m/s, the slowest of the liquids; infinite: there are none */
     double viscous_dt;                 /* s                                                        */

@@ -55,6 +55,8 @@ typedef struct mpm_patch {
     int32_t planes;                    /* 1: a plane may reach it                                 */
     int32_t cover[27];
     int32_t twin, levels;              /* index of the first twin, -1 = none                      */
+    uint64_t obey[3];                  /* of an axis with sides that only some solids touch: nodes that a
+                                          solid feels which does not, by bits                     */
 } mpm_patch;
 
 /* Rows of a tile, bit 8 x + y, in which a node carries something: of the nodes 4 to 6, 0 to 3 and -1 along z,
@@ -67,6 +69,7 @@ typedef struct mpm_reach { uint64_t rows[3]; tobi_float4 frame; } mpm_reach;
 typedef struct mpm_plane {
     double normal[3], offset;          /* 1, m                                                    */
     int    kind;                       /* tobi_wall                                               */
+    int    limited;                    /* 1 + axis: to nodes of mpm_patch.obey of this axis; 0: not at all */
     float  friction;                   /* 1, Coulomb                                              */
     float  velocity[3];                /* m/s                                                     */
 } mpm_plane;
@@ -111,6 +114,7 @@ typedef struct mpm_view {
     int    plane_count;
     mpm_plane plane[MPM_PLANES];
     double size[3];                    /* m, of the domain                                         */
-    int    touched;                    /* bit 2 axis + side: particles touch that side, nodes do not  */
+    int    touched, obeyed;            /* bit 2 axis + side: particles of some solid touch that side; nodes
+                                          of some solid obey it                                    */
     int    held;                       /* bit 2 axis + side: that side keeps particles inside      */
 } mpm_view;

@@ -26,7 +26,7 @@ static void take_off_at_sides(const tobi_system *s, int64_t point, double force[
     const tobi_double3 p = soft->position[point];
     for (int a = 0; a < s->box.dimension; a++)
         for (int upper = 0; upper < 2 && !s->box.periodic[a]; upper++) {
-            if (soft->touched >> (2*a + upper) & 1) continue;
+            if (soft->touched[soft->solid[point]] >> (2*a + upper) & 1) continue;
             double at[3] = { p.x, p.y, p.z };
             const double gap = upper ? s->box.size[a] - at[a] : at[a], share = 1 - fabs(gap/d - 0.5);
             if (!(share > 0)) continue;

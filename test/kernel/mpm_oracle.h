@@ -28,7 +28,13 @@ typedef struct oracle_node {
     double mass, momentum[3], unstressed[3], v[3], old[3], wave[3], kept[3], bound;
 } oracle_node;
 
-typedef struct oracle_side { int axis, upper, kind; double at, friction, velocity[3]; } oracle_side;
+/* chequered: only nodes obey it whose coordinates have an odd sum, see oracle_obeys. */
+typedef struct oracle_side {
+    int axis, upper, kind, chequered;
+    double at, friction, velocity[3];
+} oracle_side;
+
+static int oracle_obeys(const int place[3]) { return (place[0] + place[1] + place[2]) & 1; }
 
 typedef struct oracle_grid {
     int dimension, affine, spline, sides;    /* spline: its gradient carries the stress, not MLS's */
@@ -357,6 +363,7 @@ static void oracle_solve_grid(oracle_grid *g)
         for (int k = 0; k < g->sides; k++) {
             const oracle_side *s = &g->side[k];
             double x = place[s->axis]*g->h;
+            if (s->chequered && !oracle_obeys(place)) continue;
             if (s->upper ? x >= s->at - 1e-6*g->h : x <= s->at + 1e-6*g->h) oracle_meet_side(s, n->v);
         }
     }

@@ -87,6 +87,16 @@ static void fill(rig *g, int only, double strain)
     g->p.count = COUNT;
 }
 
+/* Where node n of a block of nodes lies, cells. */
+static void place_of(const rig *g, int64_t patch, int n, int place[3])
+{
+    const int three = g->dimension == 3;
+    const int32_t *corner = g->grid.patch[patch].corner;
+    place[0] = corner[0] + (three ? n/16 : n/4);
+    place[1] = corner[1] + (three ? n/4%4 : n%4);
+    place[2] = three ? corner[2] + n%4 : 0;
+}
+
 static void make(rig *g, int dim, int only, double strain, int threads, int isa, int transfer)
 {
     tobi_error err;
@@ -113,10 +123,19 @@ static void make(rig *g, int dim, int only, double strain, int threads, int isa,
     for (int a = 0; a < 3; a++) v->fall[a] = (float)DT*v->gravity[a];
     v->plane[0] = (mpm_plane){.normal = {1, 0, 0}, .kind = TOBI_WALL_NO_SLIP, .velocity = {0, 0.4f, 0}};
     v->plane[1] = (mpm_plane){.normal = {0, 1, 0}, .kind = TOBI_WALL_SEPARATE, .friction = 0.4f};
-    v->plane[2] = (mpm_plane){.normal = {-1, 0, 0}, .offset = -9*H, .kind = TOBI_WALL_SLIP};
+    v->plane[2] = (mpm_plane){.normal = {-1, 0, 0}, .offset = -9*H, .kind = TOBI_WALL_SLIP, .limited = 1};
     assert_int_equal(mpm_grid_sort(&g->grid, &g->p, 1/H, &g->exec, &err), TOBI_OK);
     mpm_grid_bind(&g->grid, v);
-    for (int64_t k = 0; k < g->grid.patch_count; k++) g->grid.patch[k].planes = 1;
+    for (int64_t k = 0; k < g->grid.patch_count; k++) {
+        mpm_patch *patch = &g->grid.patch[k];
+        patch->planes = 1;
+        patch->obey[0] = 0;
+        for (int n = 0; n < (dim == 3 ? MPM_NODES_3D : MPM_NODES_2D); n++) {
+            int place[3];
+            place_of(g, k, n, place);
+            patch->obey[0] |= (uint64_t)oracle_obeys(place) << n;
+        }
+    }
 }
 
 static void end(rig *g)
@@ -151,7 +170,7 @@ static oracle_grid *see(const rig *g, oracle_particle *out)
     for (int a = 0; a < 3; a++) o->gravity[a] = g->view.gravity[a];
     o->side[0] = (oracle_side){.axis = 0, .kind = 1, .velocity = {0, 0.4f, 0}};
     o->side[1] = (oracle_side){.axis = 1, .kind = 3, .friction = 0.4f};
-    o->side[2] = (oracle_side){.axis = 0, .upper = 1, .at = 9*H};
+    o->side[2] = (oracle_side){.axis = 0, .upper = 1, .at = 9*H, .chequered = 1};
     for (int64_t i = 0; i < g->p.count; i++) {
         const tobi_columns *e = &mpm_fields_of(&g->p)->strain[i], *c = &mpm_fields_of(&g->p)->affine[i];
         out[i] = (oracle_particle){
@@ -193,9 +212,8 @@ static double compare_nodes(const rig *g, oracle_grid *o)
     for (int64_t k = 0; k < g->grid.patch_count; k++)
         for (int n = 0; n < nodes; n++) {
             const tobi_float4 *mine = &g->view.node[k*nodes + n];
-            const int32_t *corner = g->grid.patch[k].corner;
-            const int place[3] = {corner[0] + (dim == 3 ? n/16 : n/4), corner[1] + (dim == 3 ? n/4%4 : n%4),
-                                  dim == 3 ? corner[2] + n%4 : 0};
+            int place[3];
+            place_of(g, k, n, place);
             oracle_node *his = oracle_at(o, place);
             double mass = his ? his->mass : 0;
             if (!(mass > 0) || !(mine->w > 0)) {

@@ -481,16 +481,20 @@ static void a_slab_hits_a_soft_ceiling(void **state)
     }
 }
 
-/* A block of 0.1 m, soft or rigid, in still water, from a height above the floor. */
+/* A block of 0.1 m, soft or rigid, in still water, from a height above the floor. soft 2: beside another that
+   starts on the floor. */
 static tobi_world *make_block(const char *method, double density, int soft, double low, const char *floor)
 {
-    char text[1000], block[300], box[100];
+    char text[1200], block[500], box[100];
     static const char same[] = "{ \"name\": \"block\", \"density\":";
+    static const char mat[] = ", { \"name\": \"mat\", \"density\": 2000, \"youngs_modulus\": 1e6, \"fill\": "
+                              "[ { \"box\": { \"min\": [0.4, 0], \"max\": [0.475, 0.05] } } ] }";
     tobi_world *world;
     snprintf(box, sizeof box, "\"box\": { \"min\": [0.2, %g], \"max\": [0.3, %g] }", low, low + 0.1);
     snprintf(block, sizeof block,
-             soft ? "\"solids\": [ %s %g, \"youngs_modulus\": 1e6, \"fill\": [ { %s } ] } ]"
-                  : "\"bodies\": [ %s %g, \"dynamics\": \"free\", %s } ]", same, density, box);
+             soft ? "\"solids\": [ %s %g, \"youngs_modulus\": 1e6, \"fill\": [ { %s } ] }%s ]"
+                  : "\"bodies\": [ %s %g, \"dynamics\": \"free\", %s }%s ]", same, density, box,
+             soft > 1 ? mat : "");
     snprintf(text, sizeof text,
              "{ \"method\": \"%s\", \"dimension\": 2, \"spacing\": 0.0125, \"end_time\": 1,"
              "\"gravity\": [0, -9.81], \"domain\": { \"min\": [0, 0], \"max\": [0.5, 0.5],"
@@ -553,6 +557,7 @@ static void a_soft_block_sinks_to_the_floor(void **state)
     }
     for (int k = 0; k < 2; k++)
         assert_true(find_gap("dfsph", 1, floors[k], &least, time) < 0.5 && least > -0.1);
+    assert_true(find_gap("dfsph", 2, "slip", &least, time) < 0.5 && least > -0.1);   /* decision 120 */
 }
 
 /* Particles under the pressure of the depth held it back: it rose a third as far (decision 112). */

@@ -46,6 +46,7 @@ typedef struct tobi_contacts {
     tobi_shift *shift;               /* of this step, at all bodies so far                       */
     int64_t shift_count, shift_room;
     struct tobi_contact_run *run;
+    int64_t *first;                  /* [chunk_room] of each chunk at a side: its place in the list */
     struct tobi_contact_candidates *candidates; /* of each body: particles that may touch it     */
     int candidates_next, candidates_room;
     double (*chunk_box)[6];          /* m, of every TOBI_BLOCK particles: lower and upper corner */

@@ -40,6 +40,7 @@ void tobi_contact_free(tobi_contacts *c)
     free(c->candidates);
     free(c->list);
     free(c->run);
+    free(c->first);
     free(c->chunk_box);
     free(c->partial);
     free(c->shift);
@@ -84,10 +85,12 @@ tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, double
     if (drift > 0 && chunks <= c->chunk_room) return TOBI_OK;
     if (chunks > c->chunk_room) {
         free(c->run);
+        free(c->first);
         free(c->chunk_box);
         c->run = malloc((size_t)chunks*sizeof *c->run);
+        c->first = malloc((size_t)chunks*sizeof *c->first);
         c->chunk_box = malloc((size_t)chunks*sizeof *c->chunk_box);
-        c->chunk_room = c->run && c->chunk_box ? chunks : 0;
+        c->chunk_room = c->run && c->first && c->chunk_box ? chunks : 0;
         if (!c->chunk_room) return fail_memory(p->count, err);
     }
     for (int k = 0; k < c->candidates_room; k++) c->candidates[k].body = NULL;
