@@ -123,6 +123,7 @@ static int read_run(report *r)
     if (code != 0) return code;
     r->scene = read_json(r->dir, "resolved.json");
     r->summary = read_json(r->dir, "summary.json");
+    r->inputs = read_json(r->dir, "inputs.json");
     const char *method = json_string_value(report_value(r, "method"));
     r->method = method ? method : "";
     r->dimension = json_integer_value(report_value(r, "dimension")) == 2 ? 2 : 3;
@@ -140,6 +141,7 @@ static void free_run(report *r)
     tobi_scene_free(r->loaded);
     json_decref(r->scene);
     json_decref(r->summary);
+    json_decref(r->inputs);
 }
 
 /* --- its sections --- */
@@ -272,6 +274,26 @@ static void write_scene(const report *r)
     free(text);
 }
 
+/* The files that the scene names, as the run read them. */
+static void write_inputs(const report *r)
+{
+    if (!json_array_size(r->inputs)) return;
+    fputs("<h2>Files of the scene</h2>\n<div class=wide><table>\n"
+          "<tr><th>file<th>from, s<th>bytes<th>SHA-256\n", r->file);
+    for (size_t k = 0; k < json_array_size(r->inputs); k++) {
+        const json_t *one = json_array_get(r->inputs, k);
+        const char *path = json_string_value(json_object_get(one, "path"));
+        const char *digest = json_string_value(json_object_get(one, "sha256"));
+        fputs("<tr><td>", r->file);
+        html_text(r->file, path ? path : "");
+        fprintf(r->file, "<td>%.6g<td>%lld<td><code>", json_number_value(json_object_get(one, "time")),
+                (long long)json_integer_value(json_object_get(one, "bytes")));
+        html_text(r->file, digest ? digest : "");
+        fputs("</code>\n", r->file);
+    }
+    fputs("</table></div>\n", r->file);
+}
+
 /* The last part of the folder's path. */
 static void write_name(const report *r)
 {
@@ -295,6 +317,7 @@ static void write_page(const report *r)
     write_plots(r);
     write_tables(r);
     write_times(r);
+    write_inputs(r);
     write_scene(r);
     fputs("</body>\n</html>\n", r->file);
 }

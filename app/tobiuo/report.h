@@ -7,7 +7,7 @@
 typedef struct report {
     const char *dir;
     FILE *file;                         /* the page                                               */
-    json_t *scene, *summary;            /* resolved.json, summary.json; NULL: not there           */
+    json_t *scene, *summary, *inputs;   /* resolved.json, summary.json, inputs.json; NULL: not there */
     tobi_world *world;                  /* made of the scene, not started; NULL: see why          */
     tobi_scene *loaded;
     char why[300];                      /* why there is no world                                  */

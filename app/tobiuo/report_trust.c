@@ -57,6 +57,19 @@ static void judge_outcome(const report *r)
     else say(r, WRONG, "end", "The run ended as \"%s\" at %.6g s.", outcome, total(r, "time"));
 }
 
+/* A second entry of a path is of a later time. */
+static void judge_inputs(const report *r)
+{
+    for (size_t k = 0; k < json_array_size(r->inputs); k++) {
+        const json_t *one = json_array_get(r->inputs, k);
+        const double time = json_number_value(json_object_get(one, "time"));
+        const char *path = json_string_value(json_object_get(one, "path"));
+        if (time > 0 && path)
+            say(r, LOOK, "files", "From %.6g s on, the run has read %s in another state than before.", time,
+                path);
+    }
+}
+
 static void judge_solver(const report *r)
 {
     const double steps = total(r, "steps"), bad = total(r, "unconverged_steps");
@@ -231,6 +244,7 @@ void write_trust(const report *r)
 {
     fputs("<h2>What to trust</h2>\n<table class=trust>\n", r->file);
     judge_outcome(r);
+    judge_inputs(r);
     judge_solver(r);
     judge_density(r);
     judge_surface(r);

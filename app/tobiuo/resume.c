@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 typedef struct resume_options {
@@ -32,23 +31,15 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return 0;
 }
 
-static int is_newer(const struct timespec *a, const struct timespec *b)
+/* What changed in a motion or a table holds from here on, and what has been computed does not follow it. */
+static void say_changed_files(const tobi_scene *scene, const char *dir)
 {
-    return a->tv_sec != b->tv_sec ? a->tv_sec > b->tv_sec : a->tv_nsec > b->tv_nsec;
-}
-
-/* What changed in a motion or a table holds from here on, and what has been computed does not follow it.
-   resolved.json is written once, when a run begins. */
-static void say_changed_files(const tobi_scene *scene, const char *resolved)
-{
-    struct stat then, now;
     const char *path;
-    if (stat(resolved, &then) != 0) return;
     for (int k = 0; (path = tobi_scene_file(scene, k)); k++) {
         int told = 0;
         for (int n = 0; n < k; n++) told |= strcmp(tobi_scene_file(scene, n), path) == 0;
-        if (told || stat(path, &now) != 0 || !is_newer(&now.st_mtim, &then.st_mtim)) continue;
-        complain("%s has changed since the run began; the run goes on with it as it is now", path);
+        if (!told && tobi_scene_file_changed(scene, dir, k))
+            complain("%s has changed since the run read it; the run goes on with it as it is now", path);
     }
 }
 
@@ -60,6 +51,8 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
     int code;
     if (tobi_run_resume(world, tobi_scene_output_def(scene), o->dir, &run, &err) != TOBI_OK) {
+        code = complain("%s", err.text);
+    } else if (tobi_scene_note_files(scene, o->dir, tobi_world_time(world), &err) != TOBI_OK) {
         code = complain("%s", err.text);
     } else {
         drive_options d = { .scene = scene, .dir = o->dir, .end = tobi_scene_world_def(scene)->end_time,
@@ -87,7 +80,7 @@ int tobiuo_resume(int argc, char **argv)
         return complain_run(o.dir, "there is no run to resume (no resolved.json)");
     }
     tobi_scene *scene = load_scene(path, &o.set);
-    if (scene) say_changed_files(scene, path);
+    if (scene) say_changed_files(scene, o.dir);
     int code = scene ? resume_scene(scene, &o) : EXIT_ERROR;
     tobi_scene_free(scene);
     free(path);

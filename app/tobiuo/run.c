@@ -102,10 +102,14 @@ static int record(tobi_scene *scene, tobi_world *world, const run_options *o, co
     tobi_status status =
         tobi_run_create(world, tobi_scene_output_def(scene), dir, o->force, resolved, &run, &err);
     free(resolved);
+    if (status == TOBI_OK) status = tobi_scene_note_files(scene, dir, 0, &err);
     if (!o->quiet && status == TOBI_OK) print_size(size, dir);
     if (!o->quiet) print_notes(world, stderr, "tobiuo: note: ");
     tobi_scene_place_error(scene, &err);
-    if (status != TOBI_OK) return complain("%s", err.text);
+    if (status != TOBI_OK) {
+        tobi_run_free(run);
+        return complain("%s", err.text);
+    }
     drive_options d = { .scene = scene, .dir = dir, .end = tobi_scene_world_def(scene)->end_time,
                         .quiet = o->quiet };
     int code = o->window ? drive_with_window(world, run, &d, scene, o->keys) : drive(world, run, &d);

@@ -27,8 +27,20 @@ static int is_outcome(const json_t *summary, const char *word)
     return outcome && strcmp(outcome, word) == 0;
 }
 
-/* The scene of a run without its end and what does not change its results; *end: its end time, s. */
-static json_t *expected_scene(const sweep *s, int run, double *end)
+/* Files that are no more what a run in dir has read. */
+static int complain_changed(const tobi_scene *scene, const char *dir)
+{
+    const char *path;
+    for (int k = 0; (path = tobi_scene_file(scene, k)); k++)
+        if (tobi_scene_file_changed(scene, dir, k))
+            return complain("%s has changed since %s read it; choose another --out, or remove that folder",
+                            path, dir);
+    return 0;
+}
+
+/* The scene of a run without its end and what does not change its results; *end: its end time, s. code is set
+   if a file of it has changed since the run in dir. */
+static json_t *expected_scene(const sweep *s, int run, const char *dir, double *end, int *code)
 {
     overrides set = { 0 };
     if (s->until) overrides_add(&set, "end_time=%s", s->until);
@@ -38,6 +50,7 @@ static json_t *expected_scene(const sweep *s, int run, double *end)
     char *text = tobi_scene_resolved(scene);
     json_t *json = text ? json_loads(text, 0, NULL) : NULL;
     free(text);
+    if (complain_changed(scene, dir)) *code = EXIT_ERROR;
     tobi_scene_free(scene);
     *end = json_number_value(json_object_get(json, "end_time"));
     json_object_del(json, "threads");
@@ -47,8 +60,10 @@ static json_t *expected_scene(const sweep *s, int run, double *end)
 
 sweep_state sweep_look(const sweep *s, int run, double *end, int *code)
 {
-    char *name = sweep_name(s, run), *path = sweep_path(s, "%s/resolved.json", name);
-    json_t *there = json_load_file(path, 0, NULL), *expected = there ? expected_scene(s, run, end) : NULL;
+    char *name = sweep_name(s, run), *dir = sweep_path(s, "%s", name);
+    char *path = sweep_path(s, "%s/resolved.json", name);
+    json_t *there = json_load_file(path, 0, NULL);
+    json_t *expected = there ? expected_scene(s, run, dir, end, code) : NULL;
     json_t *summary = sweep_summary(s, run);
     const double time = json_number_value(json_object_get(summary, "time"));
     const int whole = is_outcome(summary, "complete"), goes_on = whole || is_outcome(summary, "interrupted");
@@ -67,6 +82,7 @@ sweep_state sweep_look(const sweep *s, int run, double *end, int *code)
     json_decref(expected);
     json_decref(summary);
     free(path);
+    free(dir);
     free(name);
     return state;
 }

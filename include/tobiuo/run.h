@@ -1,6 +1,7 @@
 /* Recording a run: steps a world and leaves its results in a directory.
 
    DIR/resolved.json            the scene with every default explicit (what the caller handed over)
+   DIR/inputs.json              the files of its scene (tobi_scene_note_files)
    DIR/history.csv              one row per output: clock, solver, walls, energies, losses
    DIR/bodies.csv               one row per output and body: pose, rates, forces and torques
    DIR/probes.csv               one row per step: what the scene's probes measure, units in its header

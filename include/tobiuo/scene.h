@@ -62,6 +62,14 @@ TOBI_API const tobi_reference_def *tobi_scene_reference(const tobi_scene *scene,
 /* The absolute path of a file that the scene is computed from or drawn with: a mesh, picture, script or table
    (motions, inlets, gravity). NULL past the end; a file named twice comes twice. Owned by the scene. */
 TOBI_API const char *tobi_scene_file(const tobi_scene *scene, int index);
+/* Writes DIR/inputs.json: path, size and SHA-256 of each of these files, and the time, s, from which on the
+   run in dir has read it so. Call it with time 0 after tobi_run_create, and with the time of the world after
+   tobi_run_resume; a file that has changed gets a second entry then. Without such files nothing is written.
+   TOBI_NOT_FOUND, TOBI_IO: a file cannot be read, or the list not be written. */
+TOBI_API tobi_status tobi_scene_note_files(const tobi_scene *scene, const char *dir, double time,
+                                           tobi_error *err);
+/* 1 if the last entry of this file in DIR/inputs.json is of another content, 0 if not or if there is none. */
+TOBI_API int tobi_scene_file_changed(const tobi_scene *scene, const char *dir, int index);
 
 /* Scenes of the Taichi program (SPH_Taichi and its relatives; they have a key `Configuration`) are loaded
    like any other: translated first, so overrides are those of the native scene. This is what became of each

@@ -21,8 +21,9 @@
 
 /* Folder, pattern. A file in work has ".part" behind its name. */
 static const struct { const char *folder, *pattern; } ours[] = {
-    { "", "resolved.json" }, { "", "summary.json" }, { "", "history.csv" }, { "", "bodies.csv" },
-    { "", "solids.csv" }, { "", "probes.csv" }, { "", "lines.csv" }, { "", "joints.csv" },
+    { "", "resolved.json" }, { "", "inputs.json" }, { "", "summary.json" }, { "", "history.csv" },
+    { "", "bodies.csv" }, { "", "solids.csv" }, { "", "probes.csv" }, { "", "lines.csv" },
+    { "", "joints.csv" },
     { "", "*.pvd" },
     { "fluid", "fluid_" SIX "*.vtu" }, { "bodies", "bodies_" SIX "*.vtu" },
     { "grid", "grid_" SIX "*.vtu" }, { "surface", "surface_" SIX "*.vtp" },

@@ -420,11 +420,7 @@ expect 0 "" run long.json --quiet --out halves --until 0.1
 cp -p swing.lua good.lua && echo 'table.insert({}, 2^53, 1)' > swing.lua
 expect 1 "swing.lua: endless loop? stopped after 3 s of processor time, inside one call" resume halves
 mv good.lua swing.lua
-touch swing.lua
-expect 0 "swing.lua has changed since the run began; the run goes on with it as it is now" resume halves --quiet \
-    --until 0.15
-check "a file that did not change is not named" test "$(grep -c . err.txt)" = 1
-touch -r box.obj swing.lua
+expect 0 "" resume halves --quiet --until 0.15
 expect 1 "end_time: is 1e+300, allowed is 0 to 1e9 s" resume halves --quiet --until 1e300
 expect 0 "" resume halves --quiet --until 0.2
 check "run = run + resume" same_results whole halves

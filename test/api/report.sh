@@ -58,6 +58,23 @@ expect 1 "the kinetic energy of liquid and solids has become" run dam.json --set
     --out dam --quiet --force
 check "that run diverged" grep -q '"outcome": "diverged"' dam/summary.json
 
+# --- files of a scene that change -------------------------------------------------------------------
+expect 0 "" run tank.json --out swapped --quiet --until 0.04
+cp -p box.obj good.obj && echo "# a remark" >> box.obj
+touch -d 2000-01-01 box.obj
+expect 0 "box.obj has changed since the run read it; the run goes on with it as it is now" resume swapped --quiet \
+    --until 0.06
+check "it is named once" test "$(grep -c . err.txt)" = 1
+check "both states are kept" test "$(grep -c '/box.obj' swapped/inputs.json)" = 2
+check "with the time of the second" grep -q '"time": 0.04,' swapped/inputs.json
+check "and digests as sha256sum has them" grep -q "$(sha256sum box.obj | cut -d ' ' -f 1)" swapped/inputs.json
+PATH=/nonexistent "$program" report swapped > out.txt 2> err.txt
+check "the report says so" grep -q "From 0.04 s on, the run has read .*box.obj in another state" swapped/report.html
+sweep=(sweep tank.json --set cfl=0.3 --until 0.02 --out sweep)
+"$program" "${sweep[@]}" > out.txt 2> err.txt
+touch good.obj && mv good.obj box.obj
+expect 1 "box.obj has changed since sweep/run read it; choose another --out, or remove that folder" "${sweep[@]}"
+
 # --- without other programs -------------------------------------------------------------------------
 expect 2 "which DIR?" report
 expect 2 "--out is empty" report x --out=

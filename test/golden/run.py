@@ -18,7 +18,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 TABLE = HERE / "hashes.csv"
 LEVELS, THREADS = (2, 3, 4), (1, 2, 4)
 OLD_PROCESSOR = "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F,-AVX2_Usable,-FMA_Usable"
-APART = {"summary.json", "resolved.json", "checkpoints"}
+APART = {"summary.json", "resolved.json", "inputs.json", "checkpoints"}
 
 
 def variants():

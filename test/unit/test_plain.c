@@ -1,5 +1,6 @@
 /* Files that a user names: only plain ones are opened, by every reader of the library, and none waits. */
 #include "base/plain.h"
+#include "base/sha256.h"
 #include "geom/mesh.h"
 #include "io/csv.h"
 #include "io/store.h"
@@ -155,6 +156,29 @@ static void excerpts_are_short(void **state)
     assert_string_equal(tobi_excerpt("").text, "");
 }
 
+/* The examples of FIPS 180-4, and no bytes at all. */
+static void digests_are_those_of_the_standard(void **state)
+{
+    (void)state;
+    static const struct { const char *text; int times; const char *digest; } examples[] = {
+        { "", 1, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855" },
+        { "abc", 1, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad" },
+        { "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq", 1,
+          "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1" },
+        { "a", 1000000, "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0" } };
+    for (size_t k = 0; k < sizeof examples/sizeof *examples; k++) {
+        char digest[TOBI_SHA256_TEXT];
+        int64_t size;
+        tobi_error err;
+        FILE *file = fopen(at("text"), "w");
+        for (int n = 0; n < examples[k].times; n++) fputs(examples[k].text, file);
+        fclose(file);
+        assert_int_equal(tobi_sha256_file(at("text"), digest, &size, &err), TOBI_OK);
+        assert_string_equal(digest, examples[k].digest);
+        assert_int_equal(size, examples[k].times*strlen(examples[k].text));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -162,6 +186,7 @@ int main(void)
         cmocka_unit_test(every_reader),
         cmocka_unit_test(sizes_have_limits),
         cmocka_unit_test(excerpts_are_short),
+        cmocka_unit_test(digests_are_those_of_the_standard),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -82,6 +82,8 @@ static const char head[] =
     "| `checkpoints/` | the state, for `tobiuo resume` | at the end, and every "
     "`output.checkpoint_interval` |\n"
     "| `resolved.json` | the scene with every default | always |\n"
+    "| `inputs.json` | size and SHA-256 of each file that the scene names, and from which time on (s) the "
+    "run has read it so | with such files |\n"
     "| `summary.json` | see below | at the end |\n"
     "| `plots/`, `movie.mp4`, `picture.png`, `report.html` | curves, movie, picture, report | by "
     "`tobiuo plot`, `movie`, `picture`, `report` |\n"
