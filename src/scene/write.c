@@ -112,8 +112,8 @@ json_t *tobi_write_def(const tobi_param_table *table, const void *def)
     return NULL;
 }
 
-/* The shortest decimal number that reads back to the same bits. */
-static void write_real(FILE *out, double v)
+/* The shortest decimal number that reads back to the same bits. Nonzero as write_text. */
+static int write_real(FILE *out, double v)
 {
     char text[40];
     for (int digits = 15; digits <= 17; digits++) {
@@ -122,8 +122,7 @@ static void write_real(FILE *out, double v)
     }
     for (char *c = text; *c; c++)
         if (*c == ',') *c = '.';        /* a locale with decimal commas */
-    fputs(text, out);
-    if (!strpbrk(text, ".e")) fputs(".0", out);
+    return fputs(text, out) < 0 || (!strpbrk(text, ".e") && fputs(".0", out) < 0);
 }
 
 static int is_short(const json_t *list)
@@ -142,9 +141,9 @@ static void write_indent(FILE *out, int depth) { fprintf(out, "\n%*s", 2*depth, 
 static int write_text(FILE *out, const json_t *value)
 {
     char *text = json_dumps(value, JSON_ENCODE_ANY);
-    if (text) fputs(text, out);
+    const int failed = !text || fputs(text, out) < 0;
     free(text);
-    return !text;
+    return failed;
 }
 
 static int write_json(FILE *out, const json_t *value, int depth)
@@ -158,11 +157,11 @@ static int write_json(FILE *out, const json_t *value, int depth)
         fputc('{', out);
         json_object_foreach((json_t *)value, key, entry) {
             json_t *name = json_string(key);
-            fputs(gap, out);
+            failed |= fputs(gap, out) < 0;
             write_indent(out, depth + 1);
             failed |= write_text(out, name);
             json_decref(name);
-            fputs(": ", out);
+            failed |= fputs(": ", out) < 0;
             failed |= write_json(out, entry, depth + 1);
             gap = ",";
         }
@@ -172,14 +171,14 @@ static int write_json(FILE *out, const json_t *value, int depth)
         int brief = is_short(value);
         fputc('[', out);
         json_array_foreach(value, i, entry) {
-            if (i) fputs(brief ? ", " : ",", out);
+            if (i) failed |= fputs(brief ? ", " : ",", out) < 0;
             if (!brief) write_indent(out, depth + 1);
             failed |= write_json(out, entry, depth + 1);
         }
         if (!brief) write_indent(out, depth);
         fputc(']', out);
     } else if (json_is_real(value)) {
-        write_real(out, json_real_value(value));
+        failed = write_real(out, json_real_value(value));
     } else {
         failed = write_text(out, value);
     }
