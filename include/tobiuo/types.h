@@ -174,6 +174,7 @@ typedef tobi_status (*tobi_control_fn)(void *user, const tobi_control_input *in,
                                        tobi_control_output *out, tobi_error *err);
 
 /* A body: the inside of a closed mesh, or of one of the shapes, prescribed or moved by forces. */
+#define TOBI_NO_PLACE (-1e9)
 typedef struct tobi_body_def {
     const char *name;
     const char *mesh;           /* path: OBJ, STL or PLY; NULL = a shape                              */
@@ -206,6 +207,7 @@ typedef struct tobi_body_def {
     int    dynamics;            /* tobi_dynamics; what follows is for free and controlled bodies, but
                                    restitution and friction_coefficient for what touches any body    */
     double mass;                /* kg (per metre of depth in 2-D); 0 = density times volume          */
+    double centre_of_mass[3];   /* m, as the body starts; [0] TOBI_NO_PLACE = the middle of the mesh */
     double inertia[3];          /* kg m2, xx, yy, zz at the start, about the centre; 0 = by the mesh */
     double inertia_products[3]; /* kg m2, entries xy, xz, yz of the inertia matrix                   */
     double velocity[3];         /* m/s at the start                                                  */

@@ -338,6 +338,7 @@ static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, const tobi_
     else TOBI_TRY(tobi_mesh_orient(&b->mesh, name, err));
     if (dimension == 3) TOBI_TRY(tobi_massprops_volume(&b->mesh, &b->rest, err));
     else TOBI_TRY(tobi_massprops_section(&b->mesh, &b->rest, err));
+    tobi_body_take_centre(b, def, dimension);
     TOBI_TRY(check_pieces(b, point_spacing, dimension, err));
     if (!def->motion || def->motion_rigid) return TOBI_OK;
     return tobi_mesh_refine(&b->mesh, 3*b->spacing, err);

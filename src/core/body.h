@@ -41,7 +41,9 @@ enum { TOBI_DRY, TOBI_WET, TOBI_WET_GAP, TOBI_BURIED };
 typedef struct tobi_body {
     char name[64];
     tobi_mesh mesh;                  /* rest pose, world coordinates                           */
-    tobi_massprops rest;             /* exact integrals of the mesh, unit density              */
+    tobi_massprops rest;             /* exact integrals of the mesh, unit density; its centre is the
+                                        centre of mass that the scene gives, if it does        */
+    double middle[3];                /* m, of the volume about that centre, in rest axes       */
     double density;                  /* kg/m3                                                  */
     int vessel;                      /* 1: liquid is filled into it                            */
     int blade;                       /* 1: its edge cuts solids                                */
@@ -121,6 +123,8 @@ void tobi_body_free(tobi_body *b);
 int tobi_body_any_free(const tobi_body *bodies, int count);
 /* Fills `outermost`, `convex` and `thick` of a body that has just been placed. outline.c */
 void tobi_body_find_outline(tobi_body *b, double point_spacing);
+/* Makes the centre of mass of the definition, if any, that of `rest`; notes one outside of the mesh. */
+void tobi_body_take_centre(tobi_body *b, const tobi_body_def *def, int dimension);
 /* Builds rest_vertex and rest_bvh, for queries in the body's own axes, if they are not there yet. */
 tobi_status tobi_body_build_rest(tobi_body *b, tobi_error *err);
 /* Finds the edge of a blade, or takes the one that the definition gives; of other bodies nothing. The body

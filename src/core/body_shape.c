@@ -103,6 +103,24 @@ tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dime
     return tobi_at_key(err, status, "%s", tobi_body_shape_key(def));
 }
 
+void tobi_body_take_centre(tobi_body *b, const tobi_body_def *def, int dimension)
+{
+    const double *given = def->centre_of_mass;
+    double min[3], max[3];
+    int outside = 0;
+    if (given[0] == TOBI_NO_PLACE) return;
+    tobi_mesh_box(&b->mesh, min, max);
+    for (int a = 0; a < dimension; a++) {
+        b->middle[a] = b->rest.centre[a] - given[a];
+        b->rest.centre[a] = given[a];
+        outside |= !(given[a] >= min[a] && given[a] <= max[a]);
+    }
+    if (outside)
+        tobi_mesh_note(&b->mesh, "its centre_of_mass, (%g, %g, %g) m, lies outside of it, (%g, %g, %g) to "
+                       "(%g, %g, %g) m: it is a place in the domain, as the body starts", given[0], given[1],
+                       given[2], min[0], min[1], min[2], max[0], max[1], max[2]);
+}
+
 tobi_status tobi_body_build_rest(tobi_body *b, tobi_error *err)
 {
     if (b->rest_bvh) return TOBI_OK;

@@ -155,6 +155,9 @@ static tobi_status check_swimmer(const tobi_body_def *def, const char *name, tob
                          "body '%s' is %s and has a rigid motion; the motion of a body that moves by forces "
                          "changes its shape: a script with deform, see docs/swimmers.md", name,
                          def->dynamics == TOBI_FREE ? "free" : "controlled");
+    if (def->centre_of_mass[0] != TOBI_NO_PLACE)
+        return tobi_fail(err, TOBI_INVALID, "body '%s' changes its shape, so that its centre of mass follows "
+                         "from the shape", name);
     if (vec3_dot(def->inertia, def->inertia) > 0)
         return tobi_fail(err, TOBI_INVALID, "body '%s' changes its shape, so that its inertia follows from "
                          "the shape; give mass or density instead of inertia", name);

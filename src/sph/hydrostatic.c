@@ -4,6 +4,7 @@
    several fluids it is that of the first, of still water that of the lightest, and the others feel the rest.
    Drawback: the rest of a heavier fluid's weight is left to the particles. */
 #include "sph/hydrostatic.h"
+#include "geom/vec3.h"
 #include "sph/state.h"
 
 void sph_remove_gravity(tobi_system *s)
@@ -75,6 +76,16 @@ static void add_reference(tobi_system *s)
     }
 }
 
+/* Adds a force along one axis that is the same in each part of the volume. */
+static void add_uniform(const tobi_body *b, int axis, double force, double f[6])
+{
+    double arm[3] = { 0 };
+    for (int k = 0; k < 3; k++) vec3_add_scaled(arm, arm, b->middle[k], b->frame[k]);
+    f[axis] += force;
+    f[3 + (axis + 1)%3] += force*arm[(axis + 2)%3];
+    f[3 + (axis + 2)%3] -= force*arm[(axis + 1)%3];
+}
+
 void sph_add_hydrostatic(tobi_system *s)
 {
     double held = s->smoothing.volume*(double)s->particles.count, solids[3];
@@ -87,7 +98,7 @@ void sph_add_hydrostatic(tobi_system *s)
         for (int k = 0; k < s->sim->body_count; k++) {
             tobi_body *b = &s->sim->bodies[k];
             if (b->is_absent) continue;
-            b->load[s->number].pressure[a] -= push*b->info.volume;
+            add_uniform(b, a, -push*b->info.volume, b->load[s->number].pressure);
             s->info.wall_force[a] += push*b->info.volume;
         }
         s->info.wall_force[a] += push*held;
@@ -98,7 +109,8 @@ void sph_body_hydrostatic(const tobi_system *s, int body, double f[6])
 {
     for (int a = 0; a < s->box.dimension; a++) {
         double push = s->sim->def.gravity[a] - s->gravity[a];
-        if (push != 0) f[a] -= s->fluid[0].density*push*s->sim->bodies[body].info.volume;
+        const tobi_body *b = &s->sim->bodies[body];
+        if (push != 0) add_uniform(b, a, -s->fluid[0].density*push*b->info.volume, f);
     }
     if (sph_of(s)->reference.push > 0) sum_reference(s, &s->sim->bodies[body], f);
 }

@@ -92,10 +92,14 @@ static const tobi_param body_rows[] = {
              "program. With forces a motion changes the shape alone: docs/swimmers.md." },
     { .key = "mass", REAL, AT(tobi_body_def, mass), MASS, .unit = "kg", .text = "by density",
       .doc = "Mass, per metre of depth in 2-D; by density takes density times the volume of the mesh." },
+    { .key = "centre_of_mass", VEC3, AT(tobi_body_def, centre_of_mass),
+      .def = { TOBI_NO_PLACE, TOBI_NO_PLACE, TOBI_NO_PLACE }, PLACE, .unit = "m", .text = "mesh",
+      .doc = "Its centre of mass, as the body starts: a ship's centre of gravity. Torques of bodies.csv are "
+             "about it. mesh takes the middle of the mesh's volume." },
     { .key = "inertia", VEC3, AT(tobi_body_def, inertia), RANGE(0, 1e30), .unit = "kg m2", .text = "mesh",
       .doc = "Entries xx, yy, zz of the inertia matrix about the centre of mass, in the axes of the domain "
              "as the body starts; no principal moment may be larger than the sum of the other two. mesh "
-             "takes that of the mesh, for the mass it has." },
+             "takes that of the mesh about its own middle, for the mass it has." },
     { .key = "inertia_products", VEC3, AT(tobi_body_def, inertia_products), RANGE(-1e30, 1e30),
       .unit = "kg m2", .doc = "Entries xy, xz, yz of a given inertia matrix." },
     { .key = "velocity", VEC3, AT(tobi_body_def, velocity), SPEED, .unit = "m/s",

@@ -350,11 +350,13 @@ static void test_bodies_refused(void **state)
     (void)state;
     def.dynamics = TOBI_FREE;
     def.motion = flatten;
-    tobi_body_def rigid = def, heavy = def, vessel = def, hinged = def, dry = def;
+    tobi_body_def rigid = def, heavy = def, vessel = def, hinged = def, dry = def, low = def;
     rigid.motion_rigid = 1;
     refuse(rigid, "has a rigid motion");
     heavy.inertia[0] = heavy.inertia[1] = heavy.inertia[2] = 1;
     refuse(heavy, "its inertia follows from the shape");
+    low.centre_of_mass[0] = low.centre_of_mass[1] = low.centre_of_mass[2] = 5;
+    refuse(low, "its centre of mass follows from the shape");
     vessel.vessel = 1;
     refuse(vessel, "a vessel does not");
     hinged.hinge_axis[2] = 1;
