@@ -43,15 +43,23 @@ void sph_reference_set(tobi_system *s, double low)
     if (!sph_of(s)->mirrors) sph_of(s)->soft.still = sph_of(s)->reference;
 }
 
-/* Depths from top on, and those above as if there; scale: drops per metre. */
-typedef struct counting { const float *surface_depth; double top, scale; int64_t *n; } counting;
+/* Depths from top on, and those above as if there; scale: drops per metre. hidden: what has a number there
+   does not count; or NULL. */
+typedef struct counting {
+    const float *surface_depth;
+    const int32_t *hidden;
+    double top, scale;
+    int64_t *n;
+} counting;
 
 static void count_drops(const void *view, int64_t begin, int64_t end)
 {
     const counting *c = view;
     int64_t n[DROPS] = {0};
-    for (int64_t i = begin; i < end; i++)
-        if (c->surface_depth[i] > 0) n[(int)fmax(0, (c->surface_depth[i] - c->top)*c->scale)]++;
+    for (int64_t i = begin; i < end; i++) {
+        const double depth = c->hidden && c->hidden[i] >= 0 ? 0 : (double)c->surface_depth[i];
+        if (depth > 0) n[(int)fmax(0, (depth - c->top)*c->scale)]++;
+    }
     for (int k = 0; k < DROPS; k++)
         if (n[k]) __atomic_fetch_add(&c->n[k], n[k], __ATOMIC_RELAXED);
 }
@@ -68,13 +76,13 @@ static double find_middle(const int64_t n[DROPS], double scale)
 
 /* The depth of all but the few deepest of `count` places, 0 in those that do not count; *middle: the median
    of all, m. */
-static double find_depth(const tobi_system *s, const float *depth, int64_t count, double deepest,
-                         double *middle)
+static double find_depth(const tobi_system *s, const float *depth, const int32_t *hidden, int64_t count,
+                         double deepest, double *middle)
 {
     int64_t n[DROPS] = {0};
     const double all = 1.0001*deepest, range = fmin(all, DROPS*DROP_MOST*s->smoothing.spacing);
     const double top = all - range, scale = DROPS/range;
-    const counting view = { depth, top, scale, n };
+    const counting view = { depth, hidden, top, scale, n };
     if (!(deepest > 0)) return 0;
     tobi_loop(s->sim->exec.threads, count, 0, count_drops, &view);
     *middle = top + find_middle(n, scale);
@@ -84,10 +92,12 @@ static double find_depth(const tobi_system *s, const float *depth, int64_t count
     return top + k/scale;
 }
 
+/* A gap beside a soft solid is no surface: whether there is air the solid tells, sph_soft_find_dry. */
 static double find_low(const tobi_system *s, double *middle)
 {
-    return find_depth(s, sph_fields_of(&s->particles)->surface_depth, s->particles.count, sph_of(s)->lowest,
-                      middle);
+    return find_depth(s, sph_fields_of(&s->particles)->surface_depth,
+                      s->sim->soft.solids ? sph_of(s)->soft.last : NULL, s->particles.count,
+                      sph_of(s)->lowest, middle);
 }
 
 double sph_reference_surface(tobi_system *s) { return find_low(s, &sph_of(s)->middle); }
@@ -96,7 +106,7 @@ double sph_reference_below_air(tobi_system *s, double low)
 {
     double middle;
     const double dry = low > 0 ? sph_soft_find_dry(s, low) : 0;
-    return fmax(low, find_depth(s, sph_of(s)->soft.dry, s->sim->soft.count, dry, &middle));
+    return fmax(low, find_depth(s, sph_of(s)->soft.dry, NULL, s->sim->soft.count, dry, &middle));
 }
 
 double sph_reference_low(tobi_system *s) { return sph_reference_below_air(s, sph_reference_surface(s)); }

@@ -18,12 +18,14 @@ static const double LOOK = 2.5, LIQUID = 1.1, COVER = 0.75;
 static const double MARKS_EACH = 8, MARKS = 1e6;
 
 /* Takes the pressure from what started at a side of the domain: no liquid is between. The layers before the
-   side have one spacing of the solid each; the first has the force. */
+   side have one spacing of the solid each; the first has the force. Not from sand, whose pores have the
+   liquid at the side too. */
 static void take_off_at_sides(const tobi_system *s, int64_t point, double force[3])
 {
     const tobi_soft *soft = &s->sim->soft;
     const double d = soft->solids->smoothing.spacing, area = soft->size[point].volume/d;
     const tobi_double3 p = soft->position[point];
+    if (soft->solids->solids[soft->solid[point]].def.model == TOBI_SAND) return;
     for (int a = 0; a < s->box.dimension; a++)
         for (int upper = 0; upper < 2 && !s->box.periodic[a]; upper++) {
             if (soft->touched[soft->solid[point]] >> (2*a + upper) & 1) continue;
@@ -118,15 +120,15 @@ tobi_status sph_soft_mark(tobi_system *s, tobi_error *err)
 {
     sph_soft_marks *m = &sph_of(s)->soft.marks;
     const tobi_soft *soft = &s->sim->soft;
+    const double least = soft->solids->smoothing.spacing, most = MARKS_EACH*(double)soft->count + MARKS;
     double low[3] = { 0 }, size[3] = { 0 }, volume = 1, t[TOBI_TOTALS];
     if (!(sph_reference_make(s, 1).push > 0)) return TOBI_OK;
     for (int a = 0; a < s->box.dimension; a++) {
         const axis_of v = { soft, a, s->box.size[a] };
         tobi_launch(&s->sim->exec, TOBI_HOST(find_ends, 0, 2), &v, 0, soft->count, t);
-        low[a] = s->box.size[a] - t[7];
-        volume *= size[a] = fmax(t[6] - low[a], 0) + s->smoothing.spacing;
+        low[a] = s->box.size[a] - t[7] - 0.5*least;        /* no rounding leaves a point outside */
+        volume *= size[a] = fmax(t[6] - low[a], 0) + 0.5*least;
     }
-    const double least = soft->solids->smoothing.spacing, most = MARKS_EACH*(double)soft->count + MARKS;
     const double width = fmax(least, s->box.dimension == 3 ? cbrt(volume/most) : sqrt(volume/most));
     int64_t count = 1;
     m->inverse = 1/width;
