@@ -420,7 +420,7 @@ static void report_unknown(const pass *p, const char *prefix, const tobi_place *
     }
     for (size_t i = 0; i < count && used < sizeof all; i++)
         used += (size_t)snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "", keys[i]);
-    const int owned = tobi_describe_owners(place->key, owners, sizeof owners) > 0;
+    const int owned = tobi_describe_owners(p->table, place->key, owners, sizeof owners) > 0;
     tobi_source_mistake_at_key(p->binder->source, place, "unknown key; %s%s%sallowed here: %s",
                                owned ? "it belongs to " : "", owned ? owners : "", owned ? "; " : "", all);
 }

@@ -13,5 +13,6 @@ void tobi_describe_part(FILE *out, const tobi_part *part);
 /* Keys, fields and columns whose path has the words; how many. */
 int tobi_describe_find(FILE *out, const char *word);
 /* Writes the tables that have such a key into text, as "the top level (domain.walls), plane (walls)"; how
-   many, 0 also if there are more than three. */
-int tobi_describe_owners(const char *word, char *text, size_t size);
+   many, 0 also if there are more than three. in: the table that has no such key; if it is of a method, other
+   methods go first. */
+int tobi_describe_owners(const tobi_param_table *in, const char *word, char *text, size_t size);

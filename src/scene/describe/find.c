@@ -77,7 +77,10 @@ int tobi_describe_find(FILE *out, const char *word)
 
 /* --- where a key belongs ------------------------------------------------------------------ */
 
-int tobi_describe_owners(const char *word, char *text, size_t size)
+static int is_method(const tobi_param_table *table) { return tobi_method_table(table->name) == table; }
+
+/* methods: of methods alone. */
+static int find_owners(const char *word, int methods, char *text, size_t size)
 {
     enum { MOST = 3 };
     const tobi_param_table *table;
@@ -87,6 +90,7 @@ int tobi_describe_owners(const char *word, char *text, size_t size)
     for (int i = 0; (table = tobi_describe_table_at(i)); i++) {
         const char *owner = strcmp(table->name, "world") == 0 ? "the top level" : table->name;
         char path[160], last[160] = "";
+        if (methods && !is_method(table)) continue;
         for (const tobi_param *row = table->rows; row->key; row++) {
             snprintf(path, sizeof path, "%.*s", find_words(row->key, word), row->key);
             if (!*path || strcmp(path, last) == 0) continue;
@@ -98,6 +102,12 @@ int tobi_describe_owners(const char *word, char *text, size_t size)
         }
     }
     return found;
+}
+
+int tobi_describe_owners(const tobi_param_table *in, const char *word, char *text, size_t size)
+{
+    const int found = is_method(in) ? find_owners(word, 1, text, size) : 0;
+    return found ? found : find_owners(word, 0, text, size);
 }
 
 /* --- did you mean ------------------------------------------------------------------------- */
