@@ -41,27 +41,56 @@ static void print_solids(const tobi_world *world, int dimension)
     }
 }
 
-/* Says what a fixed step costs: of the automatic one the shortest is guessed. Returns the step that is
-   taken, 0 = it is not known. */
-static double print_step(const tobi_world_def *d, const tobi_world *world)
+/* The first steps of a run, and what they tell of all. */
+typedef struct trial {
+    int steps;               /* taken; below 2 nothing is known             */
+    double wall, step;       /* of one of them, s                           */
+    double least, most;      /* time step of the run, s; 0: it is not known */
+    tobi_status status;
+    tobi_error err;
+} trial;
+
+/* The step that is fixed, or where the shortest is guessed; 0: neither. */
+static double find_step(const tobi_world_def *d, const tobi_world *world)
 {
-    const double stable = tobi_world_stable_step(world), automatic = guess_step(d, stable);
-    double step = automatic;
-    if (d->time_step > 0.0)
-        step = tobi_world_solid_count(world) && stable > 0.0 ? d->time_step / ceil(d->time_step / stable)
-                                                             : d->time_step;
-    if (step > 0.0)
-        printf("time step        %s%.3g s, about %.9g steps to %g s",
-               d->time_step > 0.0 ? "fixed, " : "about ", step, ceil(d->end_time / step), d->end_time);
-    else
-        printf("time step        adaptive, to %g s", d->end_time);
-    if (d->time_step > 0.0 && step < 0.7 * automatic)
-        printf(": up to %.2g times the steps and the time of \"adaptive\"", automatic / step);
-    printf("\n");
-    return step;
+    const double stable = tobi_world_stable_step(world);
+    if (!(d->time_step > 0.0)) return guess_step(d, stable);
+    return tobi_world_solid_count(world) && stable > 0.0 ? d->time_step / ceil(d->time_step / stable)
+                                                         : d->time_step;
 }
 
-static double print_scene(const tobi_scene *scene, const tobi_world *world)
+/* The world takes some steps. They are longer than what is guessed where the liquid stays slower than a fall;
+   the truth lies between. Where they are shorter (springs, viscosity, surface tension), they count. */
+static void try_steps(const tobi_world_def *d, tobi_world *world, int starts, trial *t)
+{
+    *t = (trial){ .least = find_step(d, world) };
+    t->most = t->least;
+    if (starts) t->status = measure_steps(world, d->end_time, &t->steps, &t->wall, &t->step, &t->err);
+    if (t->status != TOBI_OK || t->steps < 2 || (d->time_step > 0.0 && t->step > 0.5 * t->least)) return;
+    t->most = t->step;
+    t->least = t->least > 0.0 ? fmin(t->least, t->step) : t->step;
+}
+
+static int is_range(const trial *t) { return t->most > 1.3 * t->least; }
+
+/* Says what a fixed step costs: of the automatic one the shortest is guessed. */
+static void print_step(const tobi_world_def *d, const tobi_world *world, const trial *t)
+{
+    const double automatic = guess_step(d, tobi_world_stable_step(world));
+    if (!(t->least > 0.0)) printf("time step        adaptive, to %g s", d->end_time);
+    else if (is_range(t))
+        printf("time step        %.3g to %.3g s: %.9g to %.9g steps to %g s", t->least, t->most,
+               ceil(d->end_time / t->most), ceil(d->end_time / t->least), d->end_time);
+    else
+        printf("time step        %s%.3g s, about %.9g steps to %g s",
+               d->time_step > 0.0 ? "fixed, " : "about ", t->least, ceil(d->end_time / t->least),
+               d->end_time);
+    if (d->time_step > 0.0 && t->least < 0.7 * automatic)
+        printf(": up to %.2g times the steps and the time of \"adaptive\"", automatic / t->least);
+    printf("\n");
+}
+
+static void print_scene(const tobi_scene *scene, const tobi_world *world, const trial *t)
 {
     const tobi_world_def *d = tobi_scene_world_def(scene);
     printf("scene            %s (%s, %d-D)\n", tobi_scene_name(scene), d->method, d->dimension);
@@ -69,13 +98,12 @@ static double print_scene(const tobi_scene *scene, const tobi_world *world)
     printf("domain           %g %g %g  to  %g %g %g m\n", low[0], low[1], low[2], high[0], high[1],
            high[2]);
     printf("spacing          %g m\n", d->spacing);
-    const double step = print_step(d, world);
+    print_step(d, world, t);
     print_solids(world, d->dimension);
     print_notes(world, stdout, "note             ");
     if (tobi_scene_import_table(scene))
         printf("\nA scene of %s. What became of its keys:\n\n%s\n", tobi_scene_import_program(scene),
                tobi_scene_import_table(scene));
-    return step;
 }
 
 static void print_size(const tobi_scene *scene, const tobi_run_size *size)
@@ -90,27 +118,17 @@ static void print_size(const tobi_scene *scene, const tobi_run_size *size)
     free(dir);
 }
 
-/* The world takes some steps. They are often longer than what is guessed for the whole run: the truth lies
-   between. Where they are shorter (springs, viscosity, surface tension), they count. */
-static int print_time(const tobi_scene *scene, tobi_world *world, double step)
+static int print_time(const tobi_scene *scene, const trial *t)
 {
     const double end = tobi_scene_world_def(scene)->end_time;
-    double wall, taken;
     char least[32], most[32];
-    int steps;
-    tobi_error err;
-    if (measure_steps(world, end, &steps, &wall, &taken, &err) != TOBI_OK)
-        return complain("after %d steps: %s", steps, err.text);
-    if (steps < 2) return 0;
-    if (step > 0 && taken < 0.5*step)
-        printf("note             the first steps are %.3g s: about %.0f steps to %g s\n", taken, end/taken,
-               end);
-    if (step == 0 || taken < step) step = taken;
-    duration_text(wall * end / taken, least);
-    duration_text(wall * end / step, most);
-    const int differ = taken > 1.3 * step && strcmp(least, most) != 0;
+    if (t->status != TOBI_OK) return complain("after %d steps: %s", t->steps, t->err.text);
+    if (t->steps < 2) return 0;
+    duration_text(t->wall * end / t->most, least);
+    duration_text(t->wall * end / t->least, most);
+    const int differ = is_range(t) && strcmp(least, most) != 0;
     printf("wall clock       about %s%s%s for the steps on this machine, if as fast as the first %d%s\n",
-           differ ? least : "", differ ? " to " : "", most, steps,
+           differ ? least : "", differ ? " to " : "", most, t->steps,
            tobi_scene_output_def(scene)->frames ? "; pictures take more" : "");
     return 0;
 }
@@ -173,7 +191,9 @@ static int check_world(tobi_scene *scene)
         tobi_world_destroy(world);
         return complain("%s", err.text);
     }
-    const double step = print_scene(scene, world);
+    trial t;
+    try_steps(tobi_scene_world_def(scene), world, c.fluid <= START_LIMIT, &t);
+    print_scene(scene, world, &t);
     const double machine = machine_bytes();
     if (c.fluid > 0)
         printf("%-17s%lld\n", name_particles(scene, world), (long long)c.fluid);
@@ -181,7 +201,7 @@ static int check_world(tobi_scene *scene)
     printf("memory           %.1f MB of %.0f MB\n", (double)c.bytes * 1e-6, machine * 1e-6);
     print_size(scene, &c.size);
     int code = (double)c.bytes > machine ? complain("%s", too_many) : 0;
-    if (c.fluid <= START_LIMIT) code |= print_time(scene, world, step);
+    if (c.fluid <= START_LIMIT) code |= print_time(scene, &t);
     else printf("wall clock       not measured with more than %d particles\n", START_LIMIT);
     tobi_world_destroy(world);
     return code;

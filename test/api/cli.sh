@@ -180,6 +180,7 @@ rm -rf failing
 # --- size and time ----------------------------------------------------------------------------------
 expect 0 "" check tank.json
 check "check tells bytes and files" grep -qE "^outputs +11, every 0.01 s: about [0-9.]+ MB in 56 files" out.txt
+check "check tells the steps as a range" grep -qE "^time step +[0-9.e-]+ to [0-9.e-]+ s: [0-9]+ to [0-9]+ steps to" out.txt
 check "check tells the time of a run" grep -qE "^wall clock +about .* on this machine" out.txt
 check "nothing is dear here" test -z "$(grep -e '--force' -e '"adaptive"' out.txt)"
 expect 0 "" check tank.json --set time_step=1e-5

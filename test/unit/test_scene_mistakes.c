@@ -82,7 +82,7 @@ static void unknown_keys(void **state)
           { "s.json:5:21: fluids[0].fill[0].box.centre: ", "allowed here: min, max" },
           { "s.json:5:36: fluids[0].fill[0].velcoity: ", "did you mean \"velocity\"" });
     CHECK(make(spacing, box, ",\"eisph\": { \"filter\": 1 }, \"isph\": { \"sweeps\": 3 }"),
-          { "s.json:6:13: eisph.filter: ", "belongs to dfsph (filter), wcsph (filter), isph (filter); allowed" },
+          { "s.json:6:13: eisph.filter: ", "to dfsph (filter), wcsph (filter), isph (filter); allowed" },
           { "s.json:6:38: isph.sweeps: ", "it belongs to eisph (sweeps); allowed" });
     CHECK(make(spacing, box, ",\"dfsph\": { \"suport\": 3 }, \"domain.min\": 3"),
           { "s.json:6:13: dfsph.suport: ", "did you mean \"support\"" },
