@@ -42,7 +42,7 @@ typedef struct plotter {
     FILE *script;
     tobi_scene *scene;          /* NULL: no references, 3-D                           */
     int dimension;
-    table history, bodies, probes;      /* the last two have no columns if there is no such file */
+    table history, bodies, solids, probes, lines, joints;   /* without columns if there is no such file */
     char **files;               /* names of the pictures                              */
     int file_count;
 } plotter;
@@ -178,53 +178,64 @@ static int draw_rows(plotter *plot, const rows *r, const picture_row *list)
     return code;
 }
 
-/* One set of pictures per name in bodies.csv. */
-static int draw_bodies(plotter *plot)
+/* One set of pictures per name in bodies.csv or solids.csv. */
+static int draw_named(plotter *plot, const table *t, const picture_row *list)
 {
-    const table *t = &plot->bodies;
     int name = table_column(t, "name"), code = 0;
     for (size_t i = 0; i < t->rows && code == 0; i++) {
-        const char *body = t->cells[i*(size_t)t->columns + (size_t)name];
+        const char *owner = t->cells[i*(size_t)t->columns + (size_t)name];
         int seen = 0;
         for (size_t j = 0; j < i && !seen; j++)
-            seen = strcmp(t->cells[j*(size_t)t->columns + (size_t)name], body) == 0;
-        if (seen) break;           /* every output lists the bodies once, in the same order */
-        rows r = { t, body };
-        code = draw_rows(plot, &r, plot_body);
+            seen = strcmp(t->cells[j*(size_t)t->columns + (size_t)name], owner) == 0;
+        if (seen) break;           /* every output lists them once, in the same order */
+        rows r = { t, owner };
+        code = draw_rows(plot, &r, list);
     }
     return code;
 }
 
-/* All probes that measure the same in one panel: at most CURVE_LIMIT of them. */
-static int draw_probes(plotter *plot, const char *what, const char *title)
+/* All columns that end so, in one panel: at most CURVE_LIMIT of them. */
+static int add_columns(picture *p, const table *t, const char *what, int dimension)
 {
-    const table *t = &plot->probes;
-    picture p = { .panels = 1 };
-    size_t length = strlen(what);
-    int code = 0, left_out = 0;
-    snprintf(p.title, sizeof p.title, "%s", title);
-    snprintf(p.panel[0].y_label, sizeof p.panel[0].y_label, "%s, %s", what, plot_unit(what, 0));
-    for (int k = 0; k < t->columns && code == 0; k++) {
+    panel *a = &p->panel[p->panels];
+    const size_t length = strlen(what);
+    const char *unit = plot_unit(what, dimension);
+    int left_out = 0;
+    snprintf(a->y_label, sizeof a->y_label, "%s%s%s", what, unit[0] ? ", " : "", unit);
+    for (int k = 0; k < t->columns; k++) {
         size_t size = strlen(t->names[k]);
-        if (size <= length || strcmp(t->names[k] + size - length, what) != 0) continue;
-        if (p.panel[0].curves == CURVE_LIMIT) {
+        if (size <= length || t->names[k][size - length - 1] != '_' ||
+            strcmp(t->names[k] + size - length, what) != 0) continue;
+        if (a->curves == CURVE_LIMIT) {
             left_out++;
             continue;
         }
-        curve *c = add_curve(&p.panel[0], t->names[k], t->rows);
+        curve *c = add_curve(a, t->names[k], t->rows);
         rows all = { t, NULL };
-        code = c ? 0 : complain("out of memory");
-        if (c) fill_curve(c, &all, (const int[3]){ k, -1, -1 }, NULL);
-        if (c) c->colour = p.panel[0].curves - 1;
+        if (!c) return complain("out of memory");
+        fill_curve(c, &all, (const int[3]){ k, -1, -1 }, NULL);
+        c->colour = a->curves - 1;
     }
     if (left_out)
-        fprintf(stderr, "tobiuo: note: %d more columns \"%s\" of probes.csv are not drawn\n", left_out,
-                what);
-    set_time_axis(&p, t);
-    char name[40];
-    snprintf(name, sizeof name, "probes_%s", what);
-    if (code == 0 && p.panel[0].curves) code = finish_picture(plot, &p, name);
-    picture_free(&p);
+        fprintf(stderr, "tobiuo: note: %d more columns \"%s\" of %s are not drawn\n", left_out, what,
+                t->path);
+    if (a->curves > 0) p->panels++;
+    return 0;
+}
+
+/* The pictures of a table that has a column for each name and measure. */
+static int draw_columns(plotter *plot, const table *t, const columns_row *list)
+{
+    int code = 0;
+    for (const columns_row *row = list; t->columns > 0 && row->file && code == 0; row++) {
+        picture p = { 0 };
+        snprintf(p.title, sizeof p.title, "%s", row->title);
+        for (int k = 0; k < PANEL_LIMIT && row->what[k] && code == 0; k++)
+            code = add_columns(&p, t, row->what[k], plot->dimension);
+        set_time_axis(&p, t);
+        if (code == 0 && p.panels) code = finish_picture(plot, &p, row->file);
+        picture_free(&p);
+    }
     return code;
 }
 
@@ -323,12 +334,11 @@ static int write_script(plotter *plot)
         rows all = { &plot->history, NULL };
         picture_begin_script(plot->script, plot->options->format);
         code = draw_rows(plot, &all, plot_history);
-        if (code == 0) code = draw_bodies(plot);
-        if (code == 0) code = draw_probes(plot, "pressure", "Pressure at the probes");
-        if (code == 0) code = draw_probes(plot, "level", "Level of the fluid at the probes");
-        if (code == 0) code = draw_probes(plot, "run_up", "Run-up at the probes");
-        if (code == 0) code = draw_probes(plot, "flow", "Flow through the probes");
-        if (code == 0) code = draw_probes(plot, "volume", "Volume in the probes");
+        if (code == 0) code = draw_named(plot, &plot->bodies, plot_body);
+        if (code == 0) code = draw_named(plot, &plot->solids, plot_solid);
+        if (code == 0) code = draw_columns(plot, &plot->probes, plot_probes);
+        if (code == 0) code = draw_columns(plot, &plot->lines, plot_lines);
+        if (code == 0) code = draw_columns(plot, &plot->joints, plot_joints);
         for (int k = 0; code == 0 && plot->scene && tobi_scene_reference(plot->scene, k); k++)
             code = draw_comparison(plot, k);
         int failed = ferror(plot->script);
@@ -387,11 +397,13 @@ static int draw_all(plotter *plot)
     const char *dir = plot->options->dir;
     if (!has_file(dir, "history.csv"))
         return complain_run(dir, "there is no run to draw (no history.csv)");
+    const struct { table *t; const char *file, *key; } others[] = {
+        { &plot->bodies, "bodies.csv", "name" }, { &plot->solids, "solids.csv", "name" },
+        { &plot->probes, "probes.csv", "time" }, { &plot->lines, "lines.csv", "time" },
+        { &plot->joints, "joints.csv", "time" } };
     int code = read_table(&plot->history, dir, "history.csv", "step");
-    if (code == 0 && has_file(dir, "bodies.csv"))
-        code = read_table(&plot->bodies, dir, "bodies.csv", "name");
-    if (code == 0 && has_file(dir, "probes.csv"))
-        code = read_table(&plot->probes, dir, "probes.csv", "time");
+    for (size_t k = 0; k < sizeof others/sizeof *others && code == 0; k++)
+        if (has_file(dir, others[k].file)) code = read_table(others[k].t, dir, others[k].file, others[k].key);
     if (code != 0) return code;
     if (asprintf(&plot->folder, "%s/plots", dir) < 0) return complain("out of memory");
     struct stat st;
@@ -411,9 +423,9 @@ int draw_plots(const char *dir, const char *scene, const char *format, plot_file
     plotter plot = { .options = &o, .dimension = 3 };
     const int code = draw_all(&plot);
     *files = (plot_files){ plot.folder, plot.files, plot.file_count };
-    table_free(&plot.history);
-    table_free(&plot.bodies);
-    table_free(&plot.probes);
+    table *const tables[] = { &plot.history, &plot.bodies, &plot.solids, &plot.probes, &plot.lines,
+                              &plot.joints };
+    for (size_t k = 0; k < sizeof tables/sizeof *tables; k++) table_free(tables[k]);
     tobi_scene_free(plot.scene);
     return code;
 }

@@ -29,9 +29,14 @@ typedef struct picture_row {
     panel_row panels[PANEL_LIMIT];  /* ended by a row without y_label               */
 } picture_row;
 
-/* Of history.csv, and of one body in bodies.csv; ended by a row without file. */
-extern const picture_row plot_history[], plot_body[];
-/* The unit of any column of the two tables, "" if it has none; with "/m" in two dimensions. */
+/* A picture of a table with columns NAME_WHAT: a panel for each what, with a curve for each name. */
+typedef struct columns_row { const char *file, *title, *what[PANEL_LIMIT]; } columns_row;
+
+/* Of history.csv, of one body in bodies.csv, one solid in solids.csv; of probes.csv, lines.csv, joints.csv;
+   ended by a row without file. */
+extern const picture_row plot_history[], plot_body[], plot_solid[];
+extern const columns_row plot_probes[], plot_lines[], plot_joints[];
+/* The unit of any column of the tables, "" if it has none; with "/m" in two dimensions. */
 const char *plot_unit(const char *column, int dimension);
 
 /* plot.c: the pictures of a run in DIR/plots; the exit code. scene: NULL takes the references of the run.

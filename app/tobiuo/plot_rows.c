@@ -96,6 +96,39 @@ const picture_row plot_body[] = {
     { 0 }
 };
 
+const picture_row plot_solid[] = {
+    { "solid_motion", "Motion of", 0, {
+        { "position, m", 0, 0, 0, 0, 0, XYZ("position") },
+        { "velocity, m/s", 0, 0, 0, 0, 0, XYZ("velocity") } } },
+    { "liquid_force", "Force of the liquids on", 0, {
+        { "mean force, N", 0, 1, 0, 0, 1, XYZ("mean_liquid_force") } } },
+    { 0 }
+};
+
+const columns_row plot_probes[] = {
+    { "probes_pressure", "Pressure at the probes", { "pressure" } },
+    { "probes_velocity", "Velocity at the probes", { "velocity_x", "velocity_y", "velocity_z" } },
+    { "probes_force", "Force on the probes", { "force_x", "force_y", "force_z" } },
+    { "probes_moment", "Moment on the probes", { "moment_x", "moment_y", "moment_z" } },
+    { "probes_level", "Level of the fluid at the probes", { "level" } },
+    { "probes_run_up", "Run-up at the probes", { "run_up" } },
+    { "probes_flow", "Flow through the probes", { "flow" } },
+    { "probes_volume", "Volume in the probes", { "volume" } },
+    { 0 }
+};
+
+const columns_row plot_lines[] = {
+    { "lines", "Lines", { "tension", "distance" } },
+    { 0 }
+};
+
+const columns_row plot_joints[] = {
+    { "joints_force", "Force of the joints", { "force_x", "force_y", "force_z" } },
+    { "joints_moment", "Moment of the joints", { "moment_x", "moment_y", "moment_z" } },
+    { "joints_angle", "Angle and gap of the joints", { "angle", "gap" } },
+    { 0 }
+};
+
 const char *plot_unit(const char *column, int dimension)
 {
     static const struct { const char *part, *unit, *unit_2d; } units[] = {
@@ -106,7 +139,8 @@ const char *plot_unit(const char *column, int dimension)
         { "pressure", "Pa", "Pa" }, { "level", "m", "m" }, { "run_up", "m", "m" }, { "distance", "m", "m" },
         { "moment_", "N m", "N m per m" }, { "flow", "m3/s", "m2/s" }, { "_volume", "m3", "m2" },
         { "energy", "J", "J per m" }, { "work", "J", "J per m" }, { "dissipation", "J", "J per m" },
-        { "momentum", "kg m/s", "kg m/s per m" },
+        { "momentum", "kg m/s", "kg m/s per m" }, { "tension", "N", "N per m" },
+        { "angle", "degrees", "degrees" }, { "gap", "m", "m" },
     };
     if (strcmp(column, "dt") == 0 || strcmp(column, "time") == 0) return "s";
     for (size_t k = 0; k < sizeof units / sizeof *units; k++)

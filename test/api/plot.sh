@@ -99,11 +99,11 @@ fi
 expect 0 "" plot tank
 box="the _box_ \$(touch pwned)"
 for file in energies walls incompressibility solver "${box}_motion" "${box}_force" "${box}_torque" \
-            probes_pressure probes_level "compare_P 1_pressure" compare_wall_force_z "compare_${box}_pressure_force_z"; do
+            probes_pressure probes_velocity probes_level "compare_P 1_pressure" compare_wall_force_z "compare_${box}_pressure_force_z"; do
     check "a picture of $file" has "tank/plots/$file.svg" "time, s"
     check "$file is listed" grep -qxF "tank/plots/$file.svg" out.txt
 done
-check "12 pictures" test "$(wc -l < out.txt)" = 12
+check "13 pictures" test "$(wc -l < out.txt)" = 13
 check "axes have units" has tank/plots/energies.svg "kinetic energy, J"
 check "the body is named as it is" has "tank/plots/${box}_force.svg" "the 'box' \$(touch pwned)"
 check "the label as well" has tank/plots/compare_wall_force_z.svg "Müller & <Co> 'it''s' \`touch pwned\` 10 %"
@@ -111,6 +111,18 @@ check "a reference without label shows its file" has tank/plots/compare_wall_for
 check "the marks within the run's time: twice 3, and 2 in the legend" \
     test "$(points tank/plots/compare_wall_force_z.svg)" = 8
 check "no name was run as a command" test ! -e pwned -a ! -e tank/plots/pwned
+printf 'time [s],rope_tension [N],rope_distance [m]\n0,1,2\n0.1,2,3\n' > tank/lines.csv
+printf 'time [s],pin_force_x [N],pin_moment_z [N m],pin_angle [degrees],pin_gap [m]\n0,1,2,3,0\n0.1,2,3,4,0\n' \
+    > tank/joints.csv
+printf 'time,name,position_x,velocity_x,mean_liquid_force_x\n0,jelly,1,0,0\n0.1,jelly,1,2,3\n' > tank/solids.csv
+expect 0 "" plot tank
+check "lines are drawn" has tank/plots/lines.svg "rope_tension"
+check "forces of joints are drawn" has tank/plots/joints_force.svg "force_x, N"
+check "moments of joints are drawn" has tank/plots/joints_moment.svg "pin_moment_z"
+check "angles of joints are drawn" has tank/plots/joints_angle.svg "angle, degrees"
+check "motions of solids are drawn" has tank/plots/jelly_solid_motion.svg "velocity, m/s"
+check "forces on solids are drawn" has tank/plots/jelly_liquid_force.svg "mean force, N"
+rm tank/lines.csv tank/joints.csv tank/solids.csv
 sed 's/"y_scale": -20}/"y_scale": -20, "label": "later"}/' tank.json > later.json
 expect 0 "" plot tank --scene later.json
 check "references may come later" has "tank/plots/compare_P 1_pressure.svg" "later"
@@ -137,7 +149,7 @@ printf 't [ms],"F, N",other\n900,1,1\n' > measured.csv
 expect 0 "no value between 0 and 0.04 s" plot tank
 rm measured.csv
 expect 0 "drawn without reference data" plot tank
-check "only the run's own 9" test "$(wc -l < out.txt)" = 9
+check "only the run's own 10" test "$(wc -l < out.txt)" = 10
 
 # Older or foreign tables: what is there is drawn.
 expect 0 "no values for the picture" plot made
