@@ -135,7 +135,8 @@ static const tobi_param isph_rows[] = {
       .unit = "spacings",
       .doc = "Height above the outermost particles at which the pressure is 0; 0: at these particles, which "
              "is rough." },
-    { .key = "filter", REAL, AT(tobi_isph_def, filter), RANGE(0, 1), .unit = "1", .text = "off",
+    { .key = "filter", REAL, AT(tobi_isph_def, filter), .def = { 1 }, RANGE(0, 1), .unit = "1",
+      .text = "off",
       .doc = "Share of particle-scale motion taken out per step, 1 is quietest; linear flows and longer "
              "waves are left alone. What viscosity takes counts in it. Nothing is taken where densities "
              "differ." },

@@ -99,16 +99,6 @@ static tobi_status note_rough_surface(tobi_world *w, tobi_error *err)
     return tobi_world_add_notes(w, "world", "isph.surface_height", text, err);
 }
 
-static tobi_status note_idle_filter(tobi_world *w, tobi_error *err)
-{
-    const tobi_system *s = &w->system[0];
-    const tobi_isph_def *def = s->def;
-    if (strcmp(s->method->name, "isph") != 0 || !(def->filter > 0) || tobi_system_density_ratio(s) == 1)
-        return TOBI_OK;
-    return tobi_world_add_notes(w, "world", "isph.filter",
-                                "takes nothing, as the liquids differ in density\n", err);
-}
-
 /* Angles of contact where no free surface has tension; 90 degrees, the default, asks for nothing. */
 static tobi_status note_contact_angles(tobi_world *w, tobi_error *err)
 {
@@ -165,6 +155,5 @@ tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err)
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(note_gap(w, &w->regions[k], err));
     TOBI_TRY(note_contact_angles(w, err));
     TOBI_TRY(note_rough_surface(w, err));
-    TOBI_TRY(note_idle_filter(w, err));
     return note_compression(w, err);
 }

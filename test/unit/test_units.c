@@ -121,30 +121,6 @@ static void a_rough_surface_is_told(void **state)
     assert_int_equal(notes_of_surface(TOBI_SURFACE_LOSS, 0), 0);
 }
 
-/* With liquids of several densities it takes nothing. */
-static void an_idle_filter_is_told(void **state)
-{
-    (void)state;
-    for (int k = 0; k < 2; k++) {
-        char text[600];
-        tobi_world *w;
-        int found = 0;
-        snprintf(text, sizeof text,
-                 "{'method': 'isph', 'dimension': 2, 'spacing': 0.1, 'end_time': 1, 'isph': {'filter': 1},"
-                 "'domain': {'min': [0, 0], 'max': [1, 1]}, 'fluids': ["
-                 "{'name': 'a', 'fill': [{'box': {'min': [0, 0], 'max': [1, 0.4]}}]},"
-                 "{'name': 'b', 'density': %d, 'fill': [{'box': {'min': [0, 0.4], 'max': [1, 0.8]}}]}]}",
-                 k ? 800 : 1000);
-        for (char *c = text; *c; c++)
-            if (*c == '\'') *c = '"';
-        OK(start_scene(text, &w, &err));
-        for (int n = 0; tobi_world_note(w, n); n++)
-            found += strstr(tobi_world_note(w, n), "'isph.filter': takes nothing") != NULL;
-        assert_int_equal(found, k);
-        tobi_world_destroy(w);
-    }
-}
-
 /* Litres per second. */
 static void a_jet_is_told(void **state)
 {
@@ -164,7 +140,7 @@ int main(void)
         cmocka_unit_test(other_units_are_told),
         cmocka_unit_test(a_tank_is_not),
         cmocka_unit_test(a_rough_surface_is_told),
-        cmocka_unit_test(an_idle_filter_is_told), cmocka_unit_test(a_jet_is_told),
+        cmocka_unit_test(a_jet_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

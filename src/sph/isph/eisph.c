@@ -35,6 +35,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     def.volume_gain = d->volume_gain;
     def.shifting = d->shifting;
     def.time_order = 1;
+    def.filter = 0;
     return isph_create_state(s, &def, err);
 }
 
