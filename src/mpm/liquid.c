@@ -49,30 +49,48 @@ tobi_status mpm_liquid_points(tobi_system *s, tobi_error *err)
     return TOBI_OK;
 }
 
-/* totals: work of the liquid, J. */
-static void kick(const void *view, int64_t begin, int64_t end, double *totals)
+static int is_pushed(const tobi_system *s, int64_t i)
+{
+    const tobi_float4 *push = &mpm_fields_of(&s->particles)->push[i];
+    const mlsmpm *m = s->state;
+    return (push->x != 0 || push->y != 0 || push->z != 0) &&
+           m->material[s->particles.fluid[i]].model != TOBI_STATIONARY;
+}
+
+static void kick(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const mlsmpm *m = s->state;
     const mpm_fields *f = mpm_fields_of(&s->particles);
     for (int64_t i = begin; i < end; i++) {
         const float *push = &f->push[i].x;
         float *u = &s->particles.velocity[i].x;
-        const double mass = f->strain[i].c[2].w;
-        if (push[0] == 0 && push[1] == 0 && push[2] == 0) continue;
-        if (m->material[s->particles.fluid[i]].model == TOBI_STATIONARY) continue;
-        for (int a = 0; a < 3; a++) {
-            const double before = u[a];
-            u[a] = (float)(before + s->dt*push[a]/mass);
-            totals[0] += 0.5*mass*((double)u[a]*u[a] - before*before);
-        }
+        for (int a = 0; a < 3 && is_pushed(s, i); a++)
+            u[a] = (float)((double)u[a] + s->dt*push[a]/f->strain[i].c[2].w);
     }
 }
 
-void mpm_liquid_kick(tobi_system *s, mlsmpm *m)
+void mpm_liquid_kick(tobi_system *s)
+{
+    if (s->sim->soft.solids != s) return;
+    tobi_loop(s->sim->exec.threads, s->particles.count, 0, kick, s);
+}
+
+/* totals: force times place, J. */
+static void sum_reach(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    const mpm_fields *f = mpm_fields_of(&s->particles);
+    for (int64_t i = begin; i < end; i++) {
+        const double *x = &s->particles.position[i].x;
+        const float *push = &f->push[i].x;
+        for (int a = 0; a < 3 && is_pushed(s, i); a++) totals[0] += push[a]*x[a];
+    }
+}
+
+double mpm_liquid_reach(const tobi_system *s)
 {
     double t[TOBI_TOTALS];
-    if (s->sim->soft.solids != s) return;
-    tobi_launch(&s->sim->exec, TOBI_HOST(kick, 1, 0), s, 0, s->particles.count, t);
-    m->memory.body_work += t[0];
+    if (s->sim->soft.solids != s) return 0;
+    tobi_launch(&s->sim->exec, TOBI_HOST(sum_reach, 1, 0), s, 0, s->particles.count, t);
+    return t[0];
 }

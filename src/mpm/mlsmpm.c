@@ -383,9 +383,12 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     double clock = tobi_clock();
     use_dt(s, m);
     if (s->particles.count > 0 && m->memory.age < 0) mpm_energy_start(s, m);
-    mpm_liquid_kick(s, m);
+    mpm_liquid_kick(s);
     if (m->view.held != ALL_SIDES(s->box.dimension) && is_stale(m)) remove_leavers(s, m);
-    return s->particles.count > 0 ? sort_particles(s, m, &clock, err) : TOBI_OK;
+    if (s->particles.count == 0) return TOBI_OK;
+    TOBI_TRY(sort_particles(s, m, &clock, err));
+    m->reach = mpm_liquid_reach(s);
+    return TOBI_OK;
 }
 
 static tobi_status solve(tobi_system *s, tobi_error *err)
@@ -411,6 +414,7 @@ static void move(tobi_system *s)
     double clock = tobi_clock();
     if (s->particles.count == 0) return;
     grid_to_particles(s, m, &clock);
+    m->memory.body_work += mpm_liquid_reach(s) - m->reach;
     mpm_energy_add_flow(s, m);
     measure_squeeze(s, m);
     tobi_contact_shift(&m->touch.contacts, &s->particles);

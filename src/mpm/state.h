@@ -39,6 +39,7 @@ typedef struct mlsmpm {
     double sound;                      /* m/s, the fastest of the materials                        */
     double liquid_sound;               /* m/s, the slowest of the liquids; infinite: there are none */
     double viscous_dt;                 /* s                                                        */
+    double reach;                      /* J, mpm_liquid_reach before the move                      */
     double cell;                       /* m                                                        */
     mpm_memory memory;
     tobi_soft_size *size;              /* [size_room] of the particles, for a liquid               */
