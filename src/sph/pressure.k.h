@@ -100,6 +100,13 @@ TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compressio
     return v->slope*lane_sum(a->sum) + 2*(g.x*u.x + g.y*u.y + g.z*u.z - wall_speed*g.w);
 }
 
+/* Rows of a few drops that touch are dependent: pressures of alternating sign make no force. With what they
+   give way by, (10g), such pressures stay bounded. */
+TOBI_FN float sph_give(const sph_view *v, int64_t i, float pressure)
+{
+    return v->surface[i] == SPH_SPARSE ? 0.05f*v->diagonal[i]*pressure : 0;
+}
+
 /* The least pressure of a free surface: none that pulls, but what tension carries where it is hollow. */
 TOBI_FN float sph_floor(const sph_view *v, int64_t i)
 {
@@ -181,7 +188,7 @@ TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_source_acc *a, 
                  (!v->surface[i] || r > 0 || v->pressure[i] > sph_floor(v, i));
     v->precondition[i] = active ? 1/v->diagonal[i] : 0;
     v->residual[i] = active ? r : 0;
-    v->product[i] = -sph_compression_value(v, i, &a->held, v->accel, 0);
+    v->product[i] = sph_give(v, i, v->pressure[i]) - sph_compression_value(v, i, &a->held, v->accel, 0);
     totals[0] += (double)v->residual[i]*(v->residual[i]*v->precondition[i]);
 }
 
@@ -219,7 +226,7 @@ TOBI_FN void sph_product_pair(const sph_view *v, int64_t i, const tobi_neighbors
 }
 TOBI_FN void sph_product_finish(const sph_view *v, int64_t i, sph_compression_acc *a, double *totals)
 {
-    float p = -sph_compression_value(v, i, a, v->accel, 0);
+    float p = sph_give(v, i, v->record[i].w) - sph_compression_value(v, i, a, v->accel, 0);
     v->product[i] = p;
     totals[0] += (double)p*v->record[i].w;
     totals[1] += p;
