@@ -29,6 +29,7 @@ tobi_need(luajit libluajit-5.1-dev luajit)
 tobi_need(hdf5 libhdf5-dev hdf5-serial hdf5)
 tobi_need(zlib zlib1g-dev zlib)
 tobi_need(lz4 liblz4-dev liblz4)
+tobi_need(libmd libmd-dev libmd)
 tobi_need(libpng libpng-dev libpng)
 tobi_need(libjpeg libjpeg-dev libjpeg)
 
