@@ -77,7 +77,7 @@ def compute(kind, spacing, end):
     if kind == "weir":
         filled = air_lost(out, spacing)
         case.figure(f"{text}: water in the air below the nappe", filled, "<= 0.5", filled <= 0.5)
-    # Seen at 10 mm: sluice -0.10 by dfsph, -0.07 by isph; weir -0.02 and -0.09.
+    # Seen at 10 mm: sluice -0.05 by dfsph, -0.02 by isph; weir -0.04 and -0.07.
     case.hold(f"{text}: discharge within 15 %", abs(off) <= 0.15)
     curves.append((text, probes["time"], [y - floor for y in probes["before_level"]], False))
 
