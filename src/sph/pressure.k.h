@@ -101,10 +101,10 @@ TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compressio
 }
 
 /* Rows of a few drops that touch are dependent: pressures of alternating sign make no force. With what they
-   give way by, (10g), such pressures stay bounded. */
+   give way by, (10g), such pressures stay bounded. The row of a flat surface has a density above that. */
 TOBI_FN float sph_give(const sph_view *v, int64_t i, float pressure)
 {
-    return v->surface[i] == SPH_SPARSE ? 0.05f*v->diagonal[i]*pressure : 0;
+    return v->surface[i] == SPH_SPARSE && v->density[i] < 0.75f ? 0.05f*v->diagonal[i]*pressure : 0;
 }
 
 /* The least pressure of a free surface: none that pulls, but what tension carries where it is hollow. */

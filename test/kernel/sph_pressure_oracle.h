@@ -66,7 +66,7 @@ static double compression(const oracle *o, const row *in, int i, int field, doub
 /* Eq. (10g). */
 static double give(const row *in, int i, double pressure)
 {
-    return in[i][SURF] == 2 ? 0.05*in[i][DIAG]*pressure : 0;
+    return in[i][SURF] == 2 && in[i][RHO] < 0.75 ? 0.05*in[i][DIAG]*pressure : 0;
 }
 
 /* Eq. (10), (10f). */
