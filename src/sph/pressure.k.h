@@ -102,7 +102,7 @@ TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compressio
 
 /* Rows of a few drops that touch are dependent: pressures of alternating sign make no force. With what they
    give way by, (10g), such pressures stay bounded. The row of a flat surface has a density above that. */
-TOBI_FN float sph_give(const sph_view *v, int64_t i, float pressure)
+TOBI_FN float sph_compliance(const sph_view *v, int64_t i, float pressure)
 {
     return v->surface[i] == SPH_SPARSE && v->density[i] < 0.75f ? 0.05f*v->diagonal[i]*pressure : 0;
 }
@@ -188,7 +188,7 @@ TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_source_acc *a, 
                  (!v->surface[i] || r > 0 || v->pressure[i] > sph_floor(v, i));
     v->precondition[i] = active ? 1/v->diagonal[i] : 0;
     v->residual[i] = active ? r : 0;
-    v->product[i] = sph_give(v, i, v->pressure[i]) - sph_compression_value(v, i, &a->held, v->accel, 0);
+    v->product[i] = sph_compliance(v, i, v->pressure[i]) - sph_compression_value(v, i, &a->held, v->accel, 0);
     totals[0] += (double)v->residual[i]*(v->residual[i]*v->precondition[i]);
 }
 
@@ -226,7 +226,7 @@ TOBI_FN void sph_product_pair(const sph_view *v, int64_t i, const tobi_neighbors
 }
 TOBI_FN void sph_product_finish(const sph_view *v, int64_t i, sph_compression_acc *a, double *totals)
 {
-    float p = sph_give(v, i, v->record[i].w) - sph_compression_value(v, i, a, v->accel, 0);
+    float p = sph_compliance(v, i, v->record[i].w) - sph_compression_value(v, i, a, v->accel, 0);
     v->product[i] = p;
     totals[0] += (double)p*v->record[i].w;
     totals[1] += p;

@@ -64,7 +64,7 @@ static double compression(const oracle *o, const row *in, int i, int field, doub
 }
 
 /* Eq. (10g). */
-static double give(const row *in, int i, double pressure)
+static double compliance(const row *in, int i, double pressure)
 {
     return in[i][SURF] == 2 && in[i][RHO] < 0.75 ? 0.05*in[i][DIAG]*pressure : 0;
 }
@@ -79,7 +79,7 @@ static void oracle_source(const oracle *o, const row *in, row *out, double *t)
                      (in[i][SURF] == 0 || s > 0 || in[i][PRES] > fmin(in[i][CAPILLARY], 0));
         out[i][PRE] = active ? 1/in[i][DIAG] : 0;
         out[i][RES] = active ? s : 0;
-        out[i][PROD] = give(in, i, in[i][PRES]) - compression(o, in, i, ACC, 0);
+        out[i][PROD] = compliance(in, i, in[i][PRES]) - compression(o, in, i, ACC, 0);
         t[0] += out[i][RES]*out[i][RES]*out[i][PRE];
     }
 }
@@ -87,7 +87,7 @@ static void oracle_source(const oracle *o, const row *in, row *out, double *t)
 static void oracle_product(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {
-        out[i][PROD] = give(in, i, in[i][PAYLOAD]) - compression(o, in, i, ACC, 0);
+        out[i][PROD] = compliance(in, i, in[i][PAYLOAD]) - compression(o, in, i, ACC, 0);
         t[0] += out[i][PROD]*in[i][PAYLOAD];
         t[1] += out[i][PROD];
     }

@@ -467,6 +467,24 @@ static void sand_falls_under_water(void **state)
     tobi_world_destroy(world);
 }
 
+/* A jelly of 475 J at rest under water. The kinetic energy of each kick counted as work and was lost in the
+   same substep: 35 J. */
+static void water_does_no_work_on_what_rests(void **state)
+{
+    tobi_world *world;
+    tobi_step_info info;
+    (void)state;
+    OK(start_scene("{ \"dimension\": 2, \"spacing\": 0.02, \"end_time\": 1, \"domain\": { \"min\": [0, 0],"
+                   "\"max\": [0.6, 0.5] }, \"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"box\":"
+                   "{ \"min\": [0, 0], \"max\": [0.6, 0.4] } } ] } ], \"solids\": [ { \"name\": \"jelly\","
+                   "\"density\": 1100, \"youngs_modulus\": 1e5, \"fill\": [ { \"box\":"
+                   "{ \"min\": [0.2, 0], \"max\": [0.4, 0.2] } } ] } ] }", &world, &err));
+    OK(tobi_world_advance(world, 0.5, &info, &err));
+    print_message("work %.3g J, lost %.3g J\n", info.work_bodies, info.energy_lost);
+    assert_true(fabs(info.work_bodies) < 0.5 && fabs(info.energy_lost) < 0.5);
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -485,6 +503,7 @@ int main(void)
         cmocka_unit_test(wide_domains_cost_nothing),
         cmocka_unit_test(gaps_beside_soft_solids_are_no_surface),
         cmocka_unit_test(sand_falls_under_water),
+        cmocka_unit_test(water_does_no_work_on_what_rests),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
