@@ -101,11 +101,13 @@ char *scene_path(const char *path);
 /* The same, but setting.json goes first. */
 char *import_path(const char *path);
 /* looks.c: what pictures need of the world of a scene, or of that of the run in dir with overrides; 0, or an
-   exit code after a complaint. Both are the caller's then. */
+   exit code after a complaint. Both are the caller's then. Files that have changed are said. */
 int find_looks(tobi_scene *scene, tobi_looks *looks);
 int load_looks(const char *dir, const overrides *set, tobi_scene **scene, tobi_looks *looks);
 /* The scene at such a path with the overrides, which are freed; NULL after a complaint. */
 tobi_scene *load_scene(const char *path, overrides *set);
+/* Says which files of the scene are not as the run in dir has read them, and that `what` goes on. */
+void say_changed_files(const tobi_scene *scene, const char *dir, const char *what);
 
 /* options.c: parsing of values; a usage error ends the program as argp does. */
 /* argp_parse, which may run out of memory before it has looked at anything: then the program ends. */

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "app.h"
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -62,4 +63,15 @@ tobi_scene *load_scene(const char *path, overrides *set)
     overrides_free(set);
     free(file);
     return scene;
+}
+
+void say_changed_files(const tobi_scene *scene, const char *dir, const char *what)
+{
+    const char *path;
+    for (int k = 0; (path = tobi_scene_file(scene, k)); k++) {
+        int told = 0;
+        for (int n = 0; n < k; n++) told |= strcmp(tobi_scene_file(scene, n), path) == 0;
+        if (!told && tobi_scene_file_changed(scene, dir, k))
+            complain("%s has changed since the run read it; %s goes on with it as it is now", path, what);
+    }
 }

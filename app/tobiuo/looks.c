@@ -30,5 +30,6 @@ int load_looks(const char *dir, const overrides *set, tobi_scene **scene, tobi_l
     free(path);
     if (status != TOBI_OK) return complain_scene(mistakes, &err);
     tobi_report_free(mistakes);
+    say_changed_files(*scene, dir, "the drawing");
     return find_looks(*scene, looks);
 }

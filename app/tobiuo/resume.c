@@ -31,18 +31,6 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return 0;
 }
 
-/* What changed in a motion or a table holds from here on, and what has been computed does not follow it. */
-static void say_changed_files(const tobi_scene *scene, const char *dir)
-{
-    const char *path;
-    for (int k = 0; (path = tobi_scene_file(scene, k)); k++) {
-        int told = 0;
-        for (int n = 0; n < k; n++) told |= strcmp(tobi_scene_file(scene, n), path) == 0;
-        if (!told && tobi_scene_file_changed(scene, dir, k))
-            complain("%s has changed since the run read it; the run goes on with it as it is now", path);
-    }
-}
-
 static int resume_scene(tobi_scene *scene, const resume_options *o)
 {
     tobi_error err = { 0 };
@@ -80,7 +68,8 @@ int tobiuo_resume(int argc, char **argv)
         return complain_run(o.dir, "there is no run to resume (no resolved.json)");
     }
     tobi_scene *scene = load_scene(path, &o.set);
-    if (scene) say_changed_files(scene, o.dir);
+    /* What changed in a motion or a table holds from here on; what has been computed does not follow it. */
+    if (scene) say_changed_files(scene, o.dir, "the run");
     int code = scene ? resume_scene(scene, &o) : EXIT_ERROR;
     tobi_scene_free(scene);
     free(path);

@@ -62,6 +62,7 @@ check "that run diverged" grep -q '"outcome": "diverged"' dam/summary.json
 expect 0 "" run tank.json --out swapped --quiet --until 0.04
 cp -p box.obj good.obj && echo "# a remark" >> box.obj
 touch -d 2000-01-01 box.obj
+expect 0 "box.obj has changed since the run read it; the drawing goes on with it as it is now" picture swapped
 expect 0 "box.obj has changed since the run read it; the run goes on with it as it is now" resume swapped --quiet \
     --until 0.06
 check "it is named once" test "$(grep -c . err.txt)" = 1
