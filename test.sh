@@ -53,7 +53,7 @@ list_cases() {      # [CASE]: names, or an error
 
 run_fast() {
     local log=build/test.log left=$((limit - (SECONDS - begin)))
-    timeout $((left > 1 ? left : 1)) ctest --test-dir build/release -j 2 --timeout 240 --output-on-failure \
+    timeout $((left > 1 ? left : 1)) ctest --test-dir build/release -j "$(nproc)" --timeout 240 --output-on-failure \
         --no-tests=error ${1:+-R "$1"} 2>&1 < /dev/null | tee $log
     local code=${PIPESTATUS[0]}
     [ "$code" -eq 124 ] && echo "test: stopped after $limit s; tests that did not end count as failed"

@@ -135,7 +135,7 @@ static void a_pin_carries_weight_less_buoyancy(void **state)
             add_block(world, &s);
             if (joined) join(world, "pin", "rod", NULL, 0.3, 0.4);
             OK(tobi_world_start(world, &err));
-            m[joined] = average(world, 0.25, 0.45);
+            m[joined] = average(world, 0.15, 0.3);
             tobi_world_destroy(world);
         }
         print_message("%s: the pin carries %.2f N/m, %.2f held without a joint, %.2f by Archimedes\n",
@@ -202,7 +202,7 @@ static void bear_block(const char *method, const char *clamped_to)
         if (joined) join(world, "left", "plank", NULL, 0.15, 0.1625);
         if (joined) join(world, "right", "plank", NULL, 0.45, 0.1625);
         OK(tobi_world_start(world, &err));
-        m[joined] = average(world, 0.12, 0.5);
+        m[joined] = average(world, 0.12, 0.3);
         height[joined] = find_height(world);
         tobi_world_destroy(world);
     }
