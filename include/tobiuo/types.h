@@ -175,6 +175,7 @@ typedef tobi_status (*tobi_control_fn)(void *user, const tobi_control_input *in,
 
 /* A body: the inside of a closed mesh, or of one of the shapes, prescribed or moved by forces. */
 #define TOBI_NO_PLACE (-1e9)
+#define TOBI_NOT_GIVEN (-1e9)
 typedef struct tobi_body_def {
     const char *name;
     const char *mesh;           /* path: OBJ, STL or PLY; NULL = a shape                              */
@@ -217,7 +218,8 @@ typedef struct tobi_body_def {
     double restitution;         /* 1, of collisions; of two bodies the larger one counts, against sides,
                                    planes and solids the body's alone                                */
     double friction_coefficient;/* 1, Coulomb; of two bodies, and with a separate plane, the square root
-                                   of the product counts, against sides and solids the body's alone  */
+                                   of the product counts, against sides and solids the body's alone;
+                                   TOBI_NOT_GIVEN = that of the other body, else 0.5                 */
     int    blade;               /* 1: its edge cuts solids of mlsmpm                                 */
     double edge_resistance;     /* J/m2, to make new surface with the edge                           */
     double edge_angle;          /* degrees, at most between the faces that meet at its edge          */

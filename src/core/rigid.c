@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#define FRICTION 0.5     /* of two bodies that give none */
+
 enum { ALL_SHIFTS = 7, ALL_TURNS = 56 };
 
 static int bits_of(const tobi_rigid *r) { return r->locked | (int)r->hold; }
@@ -199,7 +201,8 @@ tobi_status tobi_rigid_init(tobi_rigid *r, const tobi_body_def *def, const tobi_
     r->kind = def->dynamics;
     r->deforms = r->kind != TOBI_PRESCRIBED && def->motion != NULL;
     r->restitution = def->restitution;
-    r->friction = def->friction_coefficient;
+    r->yields = def->friction_coefficient == TOBI_NOT_GIVEN;
+    r->friction = r->yields ? FRICTION : def->friction_coefficient;
     r->mass = def->mass > 0 ? def->mass : def->density*rest->volume;
     r->orientation[0] = r->next_orientation[0] = 1;
     memcpy(r->position, centre, sizeof r->position);
@@ -219,6 +222,11 @@ tobi_status tobi_rigid_init(tobi_rigid *r, const tobi_body_def *def, const tobi_
     multiply(r->inertia, def->angular_velocity, r->momentum);
     tobi_rigid_apply_locks(r);
     return tobi_joint_init(r, def, lower, dimension, err);
+}
+
+double tobi_rigid_friction(const tobi_rigid *a, const tobi_rigid *b)
+{
+    return a->yields ? b->friction : b->yields ? a->friction : sqrt(a->friction*b->friction);
 }
 
 /* --- drift ---------------------------------------------------------------------------------- */

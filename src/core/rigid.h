@@ -16,6 +16,7 @@ typedef struct tobi_rigid {
     double mass;                     /* kg                                                              */
     double inertia[9], inverse[9];   /* kg m2 about the centre in rest axes, and its inverse            */
     double restitution, friction;    /* 1, against other bodies and sides                               */
+    int yields;                      /* 1: no friction was given, that of the other body counts          */
     double air_resistance;           /* 1/s                                                             */
     double force[3], torque[3];      /* N, N m: constant, in world axes                                 */
     tobi_control_fn control;         /* of a controlled body                                            */
@@ -95,6 +96,9 @@ int tobi_rigid_drop_pull(tobi_rigid *r);
 void tobi_rigid_apply_locks(tobi_rigid *r);
 /* J, of velocity and angular velocity; against fixed walls and bodies nobody else has it. */
 double tobi_rigid_kinetic_energy(const tobi_rigid *r);
+
+/* Coulomb friction of two bodies, 1. */
+double tobi_rigid_friction(const tobi_rigid *a, const tobi_rigid *b);
 
 /* Finds `inertial`: force and torque of the field over the body's mass, at its present velocities. */
 void tobi_rigid_feel(tobi_rigid *r, const tobi_acceleration *field);

@@ -197,7 +197,7 @@ static void prepare(tobi_solver *s, tobi_solve_row *r, tobi_touch *c, const tobi
     r->contact = c;
     r->a = &s->bodies[1 + c->a];
     r->b = b ? &s->bodies[1 + c->b] : &s->bodies[0];
-    r->friction = b ? sqrt(a->friction*b->friction) : c->friction;
+    r->friction = b ? tobi_rigid_friction(a, b) : c->friction;
     vec3_sub(arm_a, c->point, a->position);
     if (b) vec3_sub(arm_b, c->point, b->position);
     memcpy(r->axis[0], c->normal, sizeof r->axis[0]);

@@ -115,10 +115,11 @@ static const tobi_param body_rows[] = {
     { .key = "restitution", REAL, AT(tobi_body_def, restitution), RANGE(0, 1), .unit = "1",
       .doc = "Speed after over speed before a collision; of two bodies the larger value counts, against a "
              "side of the domain, a plane or a solid of mlsmpm the body's alone." },
-    { .key = "friction_coefficient", REAL, AT(tobi_body_def, friction_coefficient), .def = { 0.5 }, FRICTION,
-      .unit = "1",
+    { .key = "friction_coefficient", REAL, AT(tobi_body_def, friction_coefficient), .def = { TOBI_NOT_GIVEN },
+      FRICTION, .unit = "1", .text = "by the other",
       .doc = "Coulomb friction; of two bodies, and of a body with a separate plane, the square root of the "
-             "product counts, against a side of the domain or a solid of mlsmpm the body's alone." },
+             "product counts, against a side of the domain or a solid of mlsmpm the body's alone. By the "
+             "other: that of the body it meets, if that gives one; else 0.5." },
     { .key = "blade", BOOL, AT(tobi_body_def, blade),
       .doc = "Whether the body's edge cuts solids of mlsmpm; what is cut stays cut." },
     { .key = "edge_resistance", REAL, AT(tobi_body_def, edge_resistance), RANGE(0, 1e12), .unit = "J/m2",

@@ -89,6 +89,32 @@ static void test_box_on_slope(void **state)
     }
 }
 
+/* On a fixed plate, as steep as 0.32. One of them gives friction 0.3, the other none: the box slides. Two
+   that give one have the root of the product, 0.346: it stays. */
+static void test_friction_of_two(void **state)
+{
+    (void)state;
+    const double given[3][2] = { { 0.3, TOBI_NOT_GIVEN }, { TOBI_NOT_GIVEN, 0.3 }, { 0.3, 0.4 } };
+    const double slope = atan(0.32), gravity[3] = { 9.81*sin(slope), 0, -9.81*cos(slope) };
+    for (int k = 0; k < 3; k++) {
+        rig g;
+        rig_open(&g, 10, gravity);
+        tobi_body_def def = rig_def();
+        def.friction_coefficient = given[k][0];
+        rig_box(&g, def, (double[3]){ 0.4, 0.4, 0.1 }, (double[3]){ 1, 5, 0.15 });
+        def.dynamics = TOBI_PRESCRIBED;
+        def.friction_coefficient = given[k][1];
+        rig_box(&g, def, (double[3]){ 6, 2, 0.1 }, (double[3]){ 3.2, 5, 0.05 });
+        rig_start(&g);
+        for (int i = 0; i < 1000; i++) rig_step(&g, 1e-3);
+        const double way = g.bodies[0].rigid.position[0] - 1;
+        const double exact = k < 2 ? 0.5*9.81*(sin(slope) - 0.3*cos(slope)) : 0;
+        print_message("friction %g on %g: slid %.4g m, exact %.4g m\n", given[k][0], given[k][1], way, exact);
+        assert_true(fabs(way - exact) < (k < 2 ? 0.01*exact : 1e-4));
+        rig_close(&g);
+    }
+}
+
 /* Ten boxes for ten seconds, at 60 steps a second: stay, and come to rest. */
 static void test_stack(void **state)
 {
@@ -252,7 +278,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bounce),    cmocka_unit_test(test_incline),
-        cmocka_unit_test(test_box_on_slope), cmocka_unit_test(test_stack),
+        cmocka_unit_test(test_box_on_slope), cmocka_unit_test(test_friction_of_two),
+        cmocka_unit_test(test_stack),
         cmocka_unit_test(test_turned_stack), cmocka_unit_test(test_collision),
         cmocka_unit_test(test_balls),     cmocka_unit_test(test_loads),
         cmocka_unit_test(test_steps_of_large_bodies),

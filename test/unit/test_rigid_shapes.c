@@ -16,9 +16,11 @@ static void test_cut_faces(void **state)
     (void)state;
     rig g;
     rig_open(&g, 10, DOWN);
+    tobi_body_def def = fixed_def();
+    def.friction_coefficient = 0.5;
     for (int k = 0; k < 16; k++)
-        rig_box(&g, fixed_def(), (double[3]){ 0.5, 4, 0.2 }, (double[3]){ 1.25 + 0.5*k, 5, 1 });
-    tobi_body_def def = rig_def();
+        rig_box(&g, def, (double[3]){ 0.5, 4, 0.2 }, (double[3]){ 1.25 + 0.5*k, 5, 1 });
+    def = rig_def();
     def.velocity[0] = 3;
     def.angular_velocity[1] = 30;
     rig_ball(&g, def, 0.1, (double[3]){ 1.5, 5, 1.2 });
