@@ -48,7 +48,7 @@ typedef struct tobi_inlet_look {
 typedef struct tobi_looks {
     int    dimension, threads;
     double box_min[3], box_max[3], gravity[3], spacing;      /* m, m/s2; the spacing is the largest */
-    double speed;                      /* m/s, the largest that fills and inlets are given            */
+    double speed;                      /* m/s, where its colours end; 0 = each picture's own range    */
     int    material_count, body_count, inlet_count;
     tobi_material_look *materials;
     tobi_body_look *bodies;            /* and lines behind them */

@@ -128,8 +128,8 @@ tobi_status tobi_world_looks(const tobi_world *w, tobi_looks *looks, tobi_error 
     const tobi_world_def *def = &w->sim.def;
     const size_t materials = (size_t)tobi_world_first_material(w, w->system + w->system_count);
     tobi_record_name *body, *traction, *line;
-    *looks = (tobi_looks){ .dimension = def->dimension, .threads = w->sim.exec.threads,
-                           .speed = tobi_world_given_speed(w) };
+    *looks = (tobi_looks){ .dimension = def->dimension, .threads = w->sim.exec.threads };
+    TOBI_TRY(tobi_world_expected_speed(w, &looks->speed, err));
     for (int k = 0; k < w->system_count; k++)
         looks->spacing = fmax(looks->spacing, tobi_world_spacing(w, &w->system[k]));
     for (int a = 0; a < 3; a++) {

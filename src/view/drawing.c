@@ -252,15 +252,6 @@ static void take_bodies(tobi_drawing *d)
     d->picture.mesh_count = count;
 }
 
-/* Half the speed of a fall through the domain, or what comes in faster: the same colours in every picture of
-   a run. 0, without gravity: those of each picture. */
-static double color_speed(const tobi_looks *s)
-{
-    double work = 0;
-    for (int a = 0; a < s->dimension; a++) work += fabs(s->gravity[a])*(s->box_max[a] - s->box_min[a]);
-    return work > 0 ? fmax(0.5*sqrt(2*work), s->speed) : 0;
-}
-
 /* Range and label of the colours of a field, or of the speed. */
 static void set_range(tobi_drawing *d)
 {
@@ -366,7 +357,7 @@ static void set_picture(tobi_drawing *d)
     p->radii = d->radii;
     if (solids) p->opaque = d->opaque;
     if (solids || liquids) p->group = d->group;
-    p->value_max = d->has_palette ? d->colors - 1 : color_speed(s);
+    p->value_max = d->has_palette ? d->colors - 1 : s->speed;
     if (d->has_palette) p->palette = (const float (*)[3])d->palette, p->palette_count = d->colors;
     write_time(d->moment->time, d->title, sizeof d->title);
     p->title = d->title;

@@ -101,6 +101,8 @@ tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err);
 double tobi_world_start_speed(const tobi_world *w, const tobi_system *s);
 /* The same of all systems, but for what scripts add, which only a start tells. */
 double tobi_world_given_speed(const tobi_world *w);
+/* Where the colours of the speed end, m/s; 0: nothing tells. expected_speed.c */
+tobi_status tobi_world_expected_speed(const tobi_world *w, double *speed, tobi_error *err);
 /* Adds a note for each body that lies so near to a side that the grid feels the side through it. */
 tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
 /* Finds the bodies that solids are clamped to, before these are placed; refuses those that cannot hold. */
