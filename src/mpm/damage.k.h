@@ -61,7 +61,7 @@ TOBI_FN void mpm_find_crack(const mpm_parameters *m, lane_int model, const lane 
     for (int k = 0; k < 3; k++) {
         lane x = lane_where_less(b[k], lane_set(-0.999f), lane_set(-0.999f), b[k]);
         c->s[k] = x/(1.0f + lane_sqrt(1.0f + x));
-        c->log[k] = 0.5f*mpm_log1p(x);
+        c->log[k] = 0.5f*lane_log1p(x);
     }
     lane zero = lane_set(0), ratio = c->log[0] + c->log[1] + c->log[2];
     mpm_elastic(m, model, c->s, ratio, c->intact);

@@ -3,38 +3,11 @@
    stretches; they come from b = F F^T (a symmetric eigenproblem, by Jacobi's rotations), which is enough:
    no rotation of F is ever needed. */
 #pragma once
-#include "exec/portable.h"
+#include "exec/series.h"
 #include "mpm/view.h"
 
 /* Symmetric tensors: xx, yy, zz, xy, yz, zx. */
 enum { MPM_XX, MPM_YY, MPM_ZZ, MPM_XY, MPM_YZ, MPM_ZX };
-
-/* ln(1 + x), exact for small x; 1 + x below 1e-3 counts as 1e-3. */
-TOBI_FN lane mpm_log1p(lane x)
-{
-    x = lane_where_less(x, lane_set(-0.999f), lane_set(-0.999f), x);
-    lane u = x + 1.0f;
-    lane_int bits = lane_bits(u), shifted = bits - 0x3f3504f3;        /* so that m lies around 1 */
-    lane_int e = shifted >> 23;
-    lane m = lane_from_bits(bits - (shifted & (int32_t)0xff800000));
-    lane z = lane_where_equal(e, lane_set_int(0), x, m - 1.0f);
-    lane y = z/(z + 2.0f), y2 = y*y;
-    lane series = y2*(0.66666667f + y2*(0.4f + y2*(0.28571429f + y2*0.22222222f)));
-    return lane_from_int(e)*0.69314718f + y*(series + 2.0f);
-}
-
-/* exp(x), |x| < 80. */
-TOBI_FN lane mpm_exp(lane x)
-{
-    x = lane_where_less(x, lane_set(-80), lane_set(-80), x);
-    x = lane_where_less(lane_set(80), x, lane_set(80), x);
-    lane_int n = lane_to_int(x*1.44269504f +
-                             lane_where_less(x, lane_set(0), lane_set(-0.5f), lane_set(0.5f)));
-    lane r = (x - lane_from_int(n)*0.693359375f) + lane_from_int(n)*2.12194440e-4f;
-    lane s = 1.0f + r*(1.0f + r*(0.5f +
-                                 r*(0.16666667f + r*(0.041666668f + r*(0.0083333310f + r*0.0013888889f)))));
-    return s*lane_from_bits((n + 127) << 23);
-}
 
 /* J - 1 of F = I + E. */
 TOBI_FN lane mpm_dilation(const lane e[9])
@@ -120,7 +93,7 @@ typedef struct mpm_parameters {
 /* Kirchhoff stress of the neo-Hookean solid, eq. (6): mu (b - I) + lambda ln J I. */
 TOBI_FN void mpm_neo_hookean(const lane e[9], const mpm_parameters *m, lane tau[6])
 {
-    lane b[6], p = m->lambda*mpm_log1p(mpm_dilation(e));
+    lane b[6], p = m->lambda*lane_log1p(mpm_dilation(e));
     mpm_finger(e, b);
     for (int k = 0; k < 6; k++) tau[k] = m->mu*b[k];
     for (int k = 0; k < 3; k++) tau[k] = tau[k] + p;
@@ -130,7 +103,7 @@ TOBI_FN void mpm_neo_hookean(const lane e[9], const mpm_parameters *m, lane tau[
 TOBI_FN void mpm_liquid(lane e[9], const lane gradient[9], const mpm_parameters *m, lane tau[6])
 {
     lane dilation = mpm_dilation(e), J = dilation + 1.0f;
-    lane p = m->bulk*(1.0f/7)*(mpm_exp(-7.0f*mpm_log1p(dilation)) - 1.0f);
+    lane p = m->bulk*(1.0f/7)*(lane_exp(-7.0f*lane_log1p(dilation)) - 1.0f);
     lane trace = (gradient[0] + gradient[4] + gradient[8])*(1.0f/3), shear = 2.0f*m->viscosity*J;
     for (int k = 0; k < 9; k++) e[k] = lane_set(0);
     e[0] = dilation;
@@ -163,7 +136,7 @@ TOBI_FN void mpm_snow(const mpm_parameters *m, lane s1[3], lane g[3], lane *stat
     plastic = lane_where_less(lane_set(20), plastic, lane_set(20), plastic);
     *state = plastic - 1.0f;
     lane power = m->hardening*(1.0f - plastic);
-    *harder = mpm_exp(lane_where_less(lane_set(2), power, lane_set(2), power));
+    *harder = lane_exp(lane_where_less(lane_set(2), power, lane_set(2), power));
 }
 
 /* Von Mises with linear hardening on Hencky strains h, eq. (10), by radial return. state: plastic strain. */
@@ -222,7 +195,7 @@ TOBI_FN void mpm_principal(lane e[9], const mpm_parameters *m, lane_int model, l
     for (int k = 0; k < 3; k++) {
         lane b = lane_where_less(a[k], lane_set(-0.999f), lane_set(-0.999f), a[k]);
         s1[k] = b/(1.0f + lane_sqrt(1.0f + b));                      /* stretch - 1 */
-        h[k] = 0.5f*mpm_log1p(b);
+        h[k] = 0.5f*lane_log1p(b);
     }
     lane_int snow = lane_set_int(TOBI_SNOW), mises = lane_set_int(TOBI_VON_MISES),
         sand = lane_set_int(TOBI_SAND);
@@ -241,7 +214,7 @@ TOBI_FN void mpm_principal(lane e[9], const mpm_parameters *m, lane_int model, l
         lane log_change = log_new - h[k];
         g[k] = lane_where_equal(model, snow, cold_g[k],
                                 lane_where_less(log_change*log_change, lane_set(1e-30f), zero,
-                                                mpm_exp(log_change) - 1.0f));
+                                                lane_exp(log_change) - 1.0f));
         h[k] = log_new;
     }
     *state = lane_where_equal(model, snow, cold_state,

@@ -150,6 +150,8 @@ static void check_mixture(const tobi_scene *scene, tobi_source *source, const to
     const int openings = !is_empty(scene, "inlets") || !is_empty(scene, "outlets");
     spot at = { source, entry, 0 };
     const tobi_rules rules = { .tell = tell_entry, .user = &at };
+    if (fluid->bound.good == fluid->bound.given)
+        tobi_rules_fluid(&rules, &scene->world, &fluid->def, NULL, openings);
     for (size_t k = 0; k < entry->index && !at.told; k++) {
         const tobi_scene_fluid *other = &scene->fluids[k];
         if (fluid->bound.good == fluid->bound.given && other->bound.good == other->bound.given)

@@ -20,6 +20,8 @@ unsigned sph_needs(const tobi_system *s, int full)
     if (tobi_system_is_mixed(s)) needs |= SPH_NEED_PHASES;
     if (s->sim->opening_count > 0) needs |= SPH_NEED_OPENINGS;
     if (s->sim->def.implicit_viscosity) needs |= SPH_NEED_IMPLICIT;
+    for (int f = 0; f < s->fluid_count && s->sim->def.implicit_viscosity; f++)
+        if (!tobi_fluid_is_newtonian(&s->fluid[f])) needs |= SPH_NEED_APPARENT;
     return needs;
 }
 

@@ -3,9 +3,9 @@
 #include "core/particles.h"
 
 /* Scenes with surface tension; liquids with bodies in them; inlets and outlets; several liquids;
-   implicit viscosity; the filter (13b) with a free surface. */
+   implicit viscosity; the filter (13b) with a free surface; liquids whose viscosity depends on the flow. */
 enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2, SPH_NEED_OPENINGS = 4, SPH_NEED_PHASES = 8,
-       SPH_NEED_IMPLICIT = 16, SPH_NEED_FILTER = 32 };
+       SPH_NEED_IMPLICIT = 16, SPH_NEED_FILTER = 32, SPH_NEED_APPARENT = 64 };
 
 /* Stages of a step: boundaries; density; forces; the pressure by an equation, or by that of state; the
    correction of positions; forces on walls and bodies, new positions. Between steps: a derived output. */
@@ -66,6 +66,8 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
       "J of viscosity.md, eq. (2): xx, yy, zz, xy") \
     X(tobi_float4, TOBI_F32, 4, viscous_lack, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1", \
       "J: yz, zx; z: r of eq. (3b); w: 1/sum of V F x^2") \
+    X(tobi_float4, TOBI_F32, 4, apparent,     TOBI_SCRATCH, SPH_NEED_APPARENT, "Pa s", \
+      "x: viscosity at the shear rate y, 1/s, eq. (6) of viscosity.md") \
     X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "at a free surface 1; sparse: 2") \
     X(tobi_float4, TOBI_F32, 4, held,         TOBI_SCRATCH, SPH_NEED_OPENINGS, "m/s", \
       "velocity in a buffer; w: 1 + number of an inlet, < 0 of an outlet, 0: none") \

@@ -13,6 +13,7 @@
 #include "sph/tait.k.h"
 #include "sph/tension.k.h"
 #include "sph/viscosity.k.h"
+#include "sph/yield.k.h"
 
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)

@@ -60,7 +60,7 @@ static void bind_stage(sph_view *v, const sph_fields *f)
     v->moment = f->moment; v->target_divergence = f->target_divergence;
     v->viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
                                     f->viscous_direction, f->viscous_product, f->viscous_inverse,
-                                    f->viscous_turning, f->viscous_lack, NULL, 0};
+                                    f->viscous_turning, f->viscous_lack, NULL, 0, f->apparent};
 }
 
 void sph_stage(tobi_system *s, sph_view *v, int stage)
@@ -112,6 +112,11 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
         v->inverse_density[f] = (float)(1/s->fluid[f].density);
         v->kinematic[f] = (float)(s->fluid[f].viscosity/s->fluid[f].density);
         v->tension[f] = (float)s->fluid[f].tension;
+        v->yield_stress[f] = (float)s->fluid[f].yield_stress;
+        v->flow_index[f] = (float)s->fluid[f].flow_index;
+        v->creep_rate[f] = (float)s->fluid[f].creep_rate;
+        v->creep_viscosity[f] = (float)(s->fluid[f].viscosity*pow(s->fluid[f].creep_rate,
+                                                                 s->fluid[f].flow_index - 1));
     }
     sph_phases_bind(s, v);
     v->band_depth = (float)band_depth(c);

@@ -20,6 +20,7 @@ typedef struct sph_viscous_fields {
                 *TOBI_RESTRICT product, *TOBI_RESTRICT inverse, *TOBI_RESTRICT turning, *TOBI_RESTRICT lack;
     const tobi_float4 *operand;      /* x or direction: what the sums are over     */
     float moving;                    /* 1: walls move as they do, 0: they rest     */
+    tobi_float4 *TOBI_RESTRICT apparent;     /* x: Pa s, y: 1/s; NULL: all are Newtonian */
 } sph_viscous_fields;
 
 typedef struct sph_view {
@@ -69,6 +70,8 @@ typedef struct sph_view {
     float inverse_density[TOBI_MAX_FLUIDS];   /* m3/kg   */
     float kinematic[TOBI_MAX_FLUIDS];         /* m2/s    */
     float dynamic;                            /* Pa s, of the first */
+    float yield_stress[TOBI_MAX_FLUIDS], flow_index[TOBI_MAX_FLUIDS];      /* Pa, 1: eq. (6) of viscosity.md */
+    float creep_rate[TOBI_MAX_FLUIDS], creep_viscosity[TOBI_MAX_FLUIDS];   /* 1/s, and Pa s without yield stress */
     int   implicit;                           /* 1: viscosity and friction wait for viscosity.k.h */
     float tension[TOBI_MAX_FLUIDS];           /* N/m     */
     float interface_tension[TOBI_MAX_FLUIDS][TOBI_MAX_FLUIDS];    /* N/m, symmetric, 0 on the diagonal */

@@ -112,11 +112,23 @@ static void copy_velocities(const tobi_system *s, tobi_float4 *to)
     tobi_loop(s->sim->exec.threads, s->particles.count, 0, copy_range, &c);
 }
 
+/* The viscosity at the rates of the velocities kept: eq. (6). */
+static void find_apparent(tobi_system *s, sph_view *v, const sph_kernels *k)
+{
+    const solve q = { .s = s, .v = v, .k = k };
+    if (!v->viscous.apparent) return;
+    v->viscous.operand = v->viscous.x;
+    launch(&q, k->sph_strain, NULL);
+    sph_viscous_bodies_strain(s);
+    launch(&q, k->sph_apparent, NULL);
+}
+
 void sph_viscosity_begin(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
     if (!v->implicit) return;
     copy_velocities(s, v->viscous.x);
     if (v->phase) sph_phases_set(s, v, k);
+    find_apparent(s, v, k);
 }
 
 static void add_acceleration(const void *view, int64_t begin, int64_t end)

@@ -8,27 +8,35 @@
 /* beta of eq. (2b): a thread that is drawn out has 97 % of its resistance before pressure acts. */
 #define SPH_VISCOUS_BULK 8.0f
 
+/* Pa s, of one particle. */
+TOBI_FN float sph_viscosity_of(const sph_view *v, int64_t i)
+{
+    if (v->viscous.apparent) return v->viscous.apparent[i].x;
+    return v->phase ? v->phase[i].y : v->dynamic;
+}
+
 /* 4 F mu_ij of eight pairs, mu_ij the harmonic mean of the viscosities. */
 TOBI_FN lane sph_viscous_weight(const sph_view *v, const tobi_neighbors *n, lane own, const int shape)
 {
     const lane r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
     lane mean = own;
-    if (v->phase) {
-        lane rho, mu, depth, id;
-        lane_load_float4(v->phase, n->j, &rho, &mu, &depth, &id);
+    if (v->viscous.apparent || v->phase) {
+        lane mu, rest, a, b;
+        if (v->viscous.apparent) lane_load_float4(v->viscous.apparent, n->j, &mu, &rest, &a, &b);
+        else lane_load_float4(v->phase, n->j, &rest, &mu, &a, &b);
         mean = 2*own*mu/(mu + own + 1e-30f);
     }
     return 4*f*mean;
 }
 TOBI_FN lane sph_viscous_own(const sph_view *v, int64_t i)
 {
-    return lane_set(v->phase ? v->phase[i].y : v->dynamic);
+    return lane_set(sph_viscosity_of(v, i));
 }
 
 /* 1/(4 mu/V): sums over 4 F mu_ij are of sums over V F times that. */
 TOBI_FN float sph_viscous_share(const sph_view *v, int64_t i)
 {
-    const float mu = v->phase ? v->phase[i].y : v->dynamic;
+    const float mu = sph_viscosity_of(v, i);
     return mu > 0 ? v->slope/(4*mu) : 0;
 }
 
@@ -167,7 +175,7 @@ TOBI_FN void sph_viscous_add(const sph_view *v, int64_t i, const tobi_neighbors 
    -w, kg/m3/s. */
 TOBI_FN void sph_viscous_planes(const sph_view *v, int64_t i, tobi_float4 w, float force[3], float own[3])
 {
-    const float mu = v->phase ? v->phase[i].y : v->dynamic, r = v->viscous.lack[i].z;
+    const float mu = sph_viscosity_of(v, i), r = v->viscous.lack[i].z;
     const float *turn = &v->accel[i].x;
     for (int c = 0; c < 3; c++) force[c] = own[c] = 0;
     for (int p = 0; p < v->plane_count; p++) {

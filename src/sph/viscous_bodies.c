@@ -49,6 +49,13 @@ static void find_wall(const tobi_system *s, const tobi_boundary_entry *e, int mo
     }
 }
 
+/* Pa s, at particle i. */
+static double viscosity_at(const tobi_system *s, int64_t i)
+{
+    const tobi_float4 *apparent = sph_fields_of(&s->particles)->apparent;
+    return apparent ? apparent[i].x : s->fluid[s->particles.fluid[i]].viscosity;
+}
+
 /* Friction of one entry on particle i at velocity w and rotation `spin` of its neighbourhood, eq. (3): m/s2,
    and the couple on the body that goes with it, m2/s2; NULL: not asked. */
 static void entry_friction(const tobi_system *s, int64_t i, const tobi_boundary_entry *e, tobi_float4 w,
@@ -56,7 +63,7 @@ static void entry_friction(const tobi_system *s, int64_t i, const tobi_boundary_
 {
     const tobi_fluid *f = &s->fluid[s->particles.fluid[i]];
     const double r = sph_fields_of(&s->particles)->viscous_lack[i].z, *n = e->foot_normal, at = reach(s, e);
-    const double rate = f->viscosity/f->density*e->drag;
+    const double rate = viscosity_at(s, i)/f->density*e->drag;
     double slip[3], turn[3], wall[3], swung[3], pulled[3];
     find_wall(s, e, moving, slip, wall);
     for (int c = 0; c < 3; c++) {
@@ -69,6 +76,32 @@ static void entry_friction(const tobi_system *s, int64_t i, const tobi_boundary_
     vec3_cross(pulled, n, slip);
     for (int c = 0; c < 3; c++) out[c] = rate*((1 + 0.5*r)*slip[c] + r*at*swung[c]);
     for (int c = 0; c < 3 && couple; c++) couple[c] = rate*r*at*(pulled[c] + at*turn[c]);
+}
+
+/* What they add to the sums of sph_strain: a wall is a neighbour with the velocity of its foot. */
+static void add_strains(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    SPH_FOR_NEAR_PARTICLES(s, k, i, e) {
+        const double *n = e->foot_normal, at = reach(s, e), sigma = 0.5*e->drag*at;
+        const float *w = &s->particles.velocity[i].x;
+        tobi_float4 *row[3] = { &f->viscous_direction[i], &f->viscous_product[i], &f->viscous_residual[i] };
+        tobi_float4 *a = &f->viscous_turning[i], *b = &f->viscous_lack[i];
+        if (!(e->drag > 0)) continue;
+        a->x += (float)(sigma*at*n[0]*n[0]); a->y += (float)(sigma*at*n[1]*n[1]);
+        a->z += (float)(sigma*at*n[2]*n[2]); a->w += (float)(sigma*at*n[0]*n[1]);
+        b->x += (float)(sigma*at*n[1]*n[2]); b->y += (float)(sigma*at*n[2]*n[0]);
+        for (int c = 0; c < 3; c++) {
+            const double slip = sigma*(w[c] - e->drag_velocity[c]/e->drag);
+            row[c]->x += (float)(slip*n[0]); row[c]->y += (float)(slip*n[1]); row[c]->z += (float)(slip*n[2]);
+        }
+    }
+}
+
+void sph_viscous_bodies_strain(tobi_system *s)
+{
+    if (s->sim->body_count > 0) tobi_boundary_visit_entries(s, add_strains);
 }
 
 /* sigma s n n of the bodies, for sph_viscous_close. */
@@ -121,7 +154,7 @@ static void add_rows(const void *view, int64_t begin, int64_t end)
         const tobi_fluid *liquid = &s->fluid[s->particles.fluid[i]];
         float *r = &f->viscous_residual[i].x, *inverse = &f->viscous_inverse[i].x;
         double add[3];
-        const double rate = (1 + 0.5*f->viscous_lack[i].z)*liquid->viscosity*e->drag;
+        const double rate = (1 + 0.5*f->viscous_lack[i].z)*viscosity_at(s, i)*e->drag;
         entry_friction(s, i, e, f->viscous_velocity[i], f->accel[i], 1, add, NULL);
         for (int c = 0; c < 3 && inverse[c] > 0; c++) {
             const double n = e->foot_normal[c];

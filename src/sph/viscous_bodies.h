@@ -21,6 +21,8 @@ typedef struct sph_viscous_body {
 void sph_viscous_bodies_begin(tobi_system *s);
 /* Bodies go as they do, without an answer: for what is read between steps. */
 void sph_viscous_bodies_rest(tobi_system *s);
+/* What bodies add to the sums of velocity gradients, between sph_strain and sph_apparent. */
+void sph_viscous_bodies_strain(tobi_system *s);
 /* What bodies add to the shapes of neighbourhoods, between sph_viscous_shape and sph_viscous_close. */
 void sph_viscous_bodies_shape(tobi_system *s);
 /* And to the rotations of v->viscous.operand, after sph_viscous_spin. moving: 1 bodies go as they do, with

@@ -25,13 +25,25 @@ tobi_status tobi_mixture_check(const tobi_method *m, const tobi_fluid_def *fluid
                      m->name);
 }
 
+const char *tobi_mixture_check_flow(int implicit_viscosity, const tobi_fluid_def *fluid, tobi_error *err)
+{
+    const int yields = fluid->yield_stress > 0;
+    if (implicit_viscosity || (!yields && fluid->flow_index == 1)) return NULL;
+    tobi_fail(err, TOBI_UNSUPPORTED, "is %.10g%s, and implicit_viscosity is false; allowed without it is %s",
+              yields ? fluid->yield_stress : fluid->flow_index, yields ? " Pa" : "", yields ? "0" : "1");
+    return yields ? "yield_stress" : "flow_index";
+}
+
 void tobi_rules_fluid(const tobi_rules *r, const tobi_world_def *d, const tobi_fluid_def *fluid,
                       const tobi_fluid_def *other, int openings)
 {
     tobi_error why = { 0 };
     const tobi_method *m = tobi_method_find(d ? d->method : NULL);
-    if (!r || !fluid || !other || !m || m->solids) return;
-    if (tobi_mixture_check(m, fluid, other, openings, &why) != TOBI_OK) r->tell(r->user, "density", &why);
+    if (!r || !fluid || !m || m->solids) return;
+    const char *key = other ? NULL : tobi_mixture_check_flow(d->implicit_viscosity, fluid, &why);
+    if (key) r->tell(r->user, key, &why);
+    if (other && tobi_mixture_check(m, fluid, other, openings, &why) != TOBI_OK)
+        r->tell(r->user, "density", &why);
 }
 
 static tobi_fluid_def describe(const tobi_fluid *f)
@@ -42,6 +54,11 @@ static tobi_fluid_def describe(const tobi_fluid *f)
 tobi_status tobi_mixture_add(const tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
 {
     const tobi_system *s = &w->system[0];
+    tobi_error flow = { 0 };
+    const char *key = tobi_mixture_check_flow(w->sim.def.implicit_viscosity, def, &flow);
+    if (key)
+        return tobi_at_key(err, tobi_fail(err, flow.status, "fluid '%s': %s %s", def->name ? def->name : "", key,
+                                          flow.text), key);
     for (int k = 0; k < s->fluid_count; k++) {
         const tobi_fluid_def other = describe(&s->fluid[k]);
         tobi_error why = { 0 };

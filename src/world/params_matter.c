@@ -10,7 +10,19 @@ static const tobi_param fluid_rows[] = {
     { .key = "density", REAL, AT(tobi_fluid_def, density), .def = { 1000 }, DENSITY,
       .unit = "kg/m3", .doc = "Rest density." },
     { .key = "viscosity", REAL, AT(tobi_fluid_def, viscosity), .def = { 1.0e-3 }, RANGE(0, 1e9),
-      .unit = "Pa s", .doc = "Dynamic viscosity; water at 20 degrees C has 1.0e-3." },
+      .unit = "Pa s", .doc = "Dynamic viscosity; water at 20 degrees C has 1.0e-3. With a flow_index n it is the "
+                             "consistency, Pa s^n." },
+    { .key = "yield_stress", REAL, AT(tobi_fluid_def, yield_stress), RANGE(0, 1e9), .unit = "Pa",
+      .text = "none",
+      .doc = "Stress below which the liquid does not flow: fresh concrete has some 500, ketchup 30. It wants "
+             "implicit_viscosity." },
+    { .key = "flow_index", REAL, AT(tobi_fluid_def, flow_index), .def = { 1 }, RANGE(0.1, 1.8), .unit = "1",
+      .doc = "Power n of the shear rate in the shear stress; below 1 the liquid is thinner the faster it is "
+             "sheared. Other than 1 it wants implicit_viscosity." },
+    { .key = "creep_rate", REAL, AT(tobi_fluid_def, creep_rate), .def = { 0.01 }, RANGE(1e-6, 1e6),
+      .positive = true, .unit = "1/s",
+      .doc = "Shear rate below which the viscosity grows no more: so fast a liquid creeps at its yield "
+             "stress." },
     { .key = "surface_tension", REAL, AT(tobi_fluid_def, surface_tension), RANGE(0, 1e6), .unit = "N/m",
       .text = "none",
       .doc = "Tension of the free surface; water at 20 degrees C has 0.0728. It wants a support of "

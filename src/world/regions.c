@@ -158,6 +158,9 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     snprintf(f->name, sizeof f->name, "%s", name);
     f->density = def->density;
     f->viscosity = def->viscosity;
+    f->yield_stress = def->yield_stress;
+    f->flow_index = def->flow_index;
+    f->creep_rate = def->creep_rate;
     f->tension = def->surface_tension;
     memcpy(f->color, def->color, sizeof f->color);
     f->visible = def->visible;

@@ -15,7 +15,7 @@ enum {
     VISCOUS, VISCOUS_EXPECTED = VISCOUS + 3, VISCOUS_RESIDUAL = VISCOUS_EXPECTED + 3,
     VISCOUS_DIRECTION = VISCOUS_RESIDUAL + 3, VISCOUS_PRODUCT = VISCOUS_DIRECTION + 3,
     VISCOUS_INVERSE = VISCOUS_PRODUCT + 3, TURNING = VISCOUS_INVERSE + 3, LACK = TURNING + 4,
-    COLUMNS = LACK + 4
+    APPARENT = LACK + 4, SHEAR_RATE, COLUMNS
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
@@ -27,7 +27,8 @@ static const char *const column_name[COLUMNS] = {
     "viscous x", "viscous y", "viscous z", "expected x", "expected y", "expected z",
     "viscous rx", "viscous ry", "viscous rz", "viscous qx", "viscous qy", "viscous qz",
     "viscous Aqx", "viscous Aqy", "viscous Aqz", "viscous Mx", "viscous My", "viscous Mz",
-    "Jxx", "Jyy", "Jzz", "Jxy", "Jyz", "Jzx", "wall's lack", "1/trace"
+    "Jxx", "Jyy", "Jzz", "Jxy", "Jyz", "Jzx", "wall's lack", "1/trace",
+    "apparent viscosity", "shear rate"
 };
 
 enum { TABLE = 4000 };
@@ -43,6 +44,7 @@ typedef struct oracle {
     int plane_count;
     tobi_plane plane[6];
     const uint8_t *fluid;
+    double yield_stress[2], flow_index[2], creep_rate[2];
     double rho0[2], nu[2], gravity[3], removed_gravity[3];
     double dt, alpha, beta, mean, smooth, filter, surface_limit, speed_cap;
     const float *coarse;

@@ -109,13 +109,20 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->band_depth = (float)(0.6*g->c.spacing);
 }
 
-static void rig_bind_viscosity(rig *g, double mu)
+static void rig_bind_viscosity(rig *g, const double rho[2], const double nu[2])
 {
     const sph_fields *f = sph_fields_of(&g->p);
-    g->view.dynamic = (float)mu;
+    g->view.dynamic = (float)(rho[0]*nu[0]);
     g->view.viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
                                          f->viscous_direction, f->viscous_product, f->viscous_inverse,
-                                         f->viscous_turning, f->viscous_lack, f->viscous_velocity, 1};
+                                         f->viscous_turning, f->viscous_lack, f->viscous_velocity, 1, f->apparent};
+    for (int k = 0; k < 2; k++) {
+        const double yield = 0.1 + 0.3*k, index = k == 0 ? 0.6 : 1, creep = 2;
+        g->view.yield_stress[k] = (float)yield; g->view.flow_index[k] = (float)index;
+        g->view.creep_rate[k] = (float)creep;
+        g->view.creep_viscosity[k] = (float)(nu[k]*rho[k]*pow(creep, index - 1));
+        g->o.yield_stress[k] = yield; g->o.flow_index[k] = index; g->o.creep_rate[k] = creep;
+    }
 }
 
 /* Still water that begins under the first layers and has sunk by a spacing since. */
@@ -219,7 +226,8 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     }
     tobi_box_init(&g->box, k->dimension, lower, upper, k->periodic, g->c.h);
     int64_t count = (int64_t)n[0]*n[1]*n[2];
-    const unsigned all = SPH_NEED_TENSION | SPH_NEED_WETTED | SPH_NEED_PHASES | SPH_NEED_IMPLICIT;
+    const unsigned all = SPH_NEED_TENSION | SPH_NEED_WETTED | SPH_NEED_PHASES | SPH_NEED_IMPLICIT |
+                         SPH_NEED_APPARENT;
     list.count = sph_field_list.count;
     for (int f = 0; f < list.count; f++) {
         field[f] = sph_field_list.field[f];
@@ -233,7 +241,7 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     if (tobi_cells_list(&g->cells, &g->box, g->c.h, &g->p, &g->exec, err)) return 1;
     if (k->along == 2) rig_hide_walls(g);
     rig_bind(g, k, rho, nu);
-    rig_bind_viscosity(g, nu[0]*rho[0]);
+    rig_bind_viscosity(g, rho, nu);
     rig_bind_oracle(g, k, rho, nu);
     rig_bind_still(g, k);
     rig_bind_grid(g, k);
@@ -270,6 +278,7 @@ static void rig_get(const rig *g, row *s)
         for (int a = 0; a < 4; a++) s[i][NORMAL + a] = (&f->normal[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][TENSOR + a] = (&f->stretch[i].x)[a];
         for (int a = 0; a < 3; a++) s[i][TENSOR + 4 + a] = (&f->shear[i].x)[a];
+        s[i][APPARENT] = f->apparent[i].x; s[i][SHEAR_RATE] = f->apparent[i].y;
         s[i][BAND] = f->accel[i].w; s[i][CAPILLARY] = f->capillary[i];
         s[i][PAYLOAD] = g->cells.record[i].w;
         s[i][RHO] = f->density[i]; s[i][DIAG] = f->diagonal[i]; s[i][PRE] = f->precondition[i];
@@ -307,6 +316,7 @@ static void rig_set(rig *g, const row *s)
         for (int a = 0; a < 4; a++) (&f->normal[i].x)[a] = (float)s[i][NORMAL + a];
         for (int a = 0; a < 4; a++) (&f->stretch[i].x)[a] = (float)s[i][TENSOR + a];
         for (int a = 0; a < 3; a++) (&f->shear[i].x)[a] = (float)s[i][TENSOR + 4 + a];
+        f->apparent[i] = (tobi_float4){ (float)s[i][APPARENT], (float)s[i][SHEAR_RATE], 0, 0 };
         f->accel[i].w = (float)s[i][BAND]; f->capillary[i] = (float)s[i][CAPILLARY];
         g->cells.record[i].w = (float)s[i][PAYLOAD];
         f->density[i] = (float)s[i][RHO]; f->diagonal[i] = (float)s[i][DIAG];

@@ -4,9 +4,8 @@
 
 static double viscosity_of(const oracle *o, const row *in, int i)
 {
-    (void)in;
-    (void)i;
-    return o->nu[0]*o->rho0[0];                       /* the rig has one viscosity where phases are absent */
+    (void)o;
+    return in[i][APPARENT];
 }
 
 static void cross(const double a[3], const double b[3], double out[3])
@@ -16,7 +15,8 @@ static void cross(const double a[3], const double b[3], double out[3])
 
 static double pair_weight(const oracle *o, const row *in, int i, int j, double r)
 {
-    return 4*o->volume*o->g_scale*oracle_f(o, r)*0.5*(viscosity_of(o, in, i) + viscosity_of(o, in, j));
+    const double a = viscosity_of(o, in, i), b = viscosity_of(o, in, j);
+    return 4*o->volume*o->g_scale*oracle_f(o, r)*2*a*b/(a + b);
 }
 
 /* Distance from a no-slip plane in reach, 0: none; and sigma there. */
@@ -26,6 +26,68 @@ static double no_slip_distance(const oracle *o, const row *in, int i, int k, dou
     if (!o->plane[k].no_slip || s >= o->h) return 0;
     *sigma = look_up(o, o->sigma, s);
     return s;
+}
+
+/* The sums of eq. (6b). */
+static void oracle_strain(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        const double *w = &in[i][VISCOUS];
+        double m[6] = {0}, g[3][3] = {{0}};
+        EACH_NEIGHBOUR(o, in, i, j, x, r) {
+            const double f = o->volume*o->g_scale*oracle_f(o, r);
+            for (int a = 0; a < 3; a++) {
+                m[a] += f*x[a]*x[a];
+                m[3 + a] += f*x[a]*x[(a + 1)%3];
+                for (int b = 0; b < 3; b++) g[a][b] += f*(w[a] - in[j][VISCOUS + a])*x[b];
+            }
+        }
+        for (int k = 0; k < o->plane_count; k++) {
+            const int c = o->plane[k].axis;
+            double sigma, s = no_slip_distance(o, in, i, k, &sigma);
+            if (!(s > 0)) continue;
+            m[c] += sigma*s;
+            for (int a = 0; a < 3; a++)
+                g[a][c] += sigma*o->plane[k].sign*(w[a] - (double)o->plane[k].velocity[a]);
+        }
+        memcpy(&out[i][TURNING], m, sizeof m);
+        out[i][LACK + 2] = out[i][LACK + 3] = 0;
+        memcpy(&out[i][VISCOUS_DIRECTION], g[0], sizeof g[0]);
+        memcpy(&out[i][VISCOUS_PRODUCT], g[1], sizeof g[1]);
+        memcpy(&out[i][VISCOUS_RESIDUAL], g[2], sizeof g[2]);
+    }
+}
+
+/* Eq. (6), (6b), by elimination. */
+static void oracle_apparent(const oracle *o, const row *in, row *out, double *t)
+{
+    static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        const double *m6 = &in[i][TURNING], least = 1e-4*(m6[0] + m6[1] + m6[2]) + 1e-30;
+        const int f = o->fluid[i];
+        double m[3][6], square = 0, trace = 0;
+        for (int a = 0; a < 3; a++) {
+            for (int b = 0; b < 3; b++) m[a][b] = m6[place[a][b]] + (a == b ? least : 0);
+            m[a][3] = in[i][VISCOUS_DIRECTION + a];
+            m[a][4] = in[i][VISCOUS_PRODUCT + a];
+            m[a][5] = in[i][VISCOUS_RESIDUAL + a];
+        }
+        if (o->dimension == 2) m[2][2] = 1;
+        for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++)
+                for (int c = 5; a != b && c >= a; c--) m[b][c] -= m[b][a]/m[a][a]*m[a][c];
+        for (int a = 0; a < 3; a++) trace += m[a][3 + a]/m[a][a];
+        for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++) {
+                const double strain = 0.5*(m[b][3 + a]/m[b][b] + m[a][3 + b]/m[a][a]) - (a == b ? trace/3 : 0);
+                square += 2*strain*strain;
+            }
+        const double faster = sqrt(square + o->creep_rate[f]*o->creep_rate[f]);
+        out[i][SHEAR_RATE] = sqrt(square);
+        out[i][APPARENT] = o->nu[f]*o->rho0[f]*pow(faster, o->flow_index[f] - 1) + o->yield_stress[f]/faster;
+    }
 }
 
 /* J of the pairs, of sums of V F, and N of the planes. */

@@ -54,6 +54,8 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_smooth_normal oracle_smooth_normal
 #define oracle_sph_curvature oracle_curvature
 #define oracle_sph_tension oracle_tension
+#define oracle_sph_strain oracle_strain
+#define oracle_sph_apparent oracle_apparent
 #define oracle_sph_viscous_shape oracle_viscous_shape
 #define oracle_sph_viscous_close oracle_viscous_close
 #define oracle_sph_viscous_spin oracle_viscous_spin
