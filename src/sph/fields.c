@@ -10,7 +10,7 @@ const tobi_field_list sph_field_list = { fields, sizeof fields/sizeof *fields, s
 
 const tobi_output sph_outputs[] = {
     { "acceleration", 3, "m/s2", 1 }, { "vorticity", 3, "1/s", 1 }, { "surface", 1, "1", 0 },
-    { "material", 1, "1", 0 }, { NULL, 0, NULL, 0 } };
+    { "apparent_viscosity", 1, "Pa s", 1 }, { "material", 1, "1", 0 }, { NULL, 0, NULL, 0 } };
 
 unsigned sph_needs(const tobi_system *s, int full)
 {
@@ -36,6 +36,8 @@ void sph_read(const tobi_system *s, const char *name, int64_t i, double *out)
         const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
         /* that of isph is smooth as it is; an average would be one-sided at walls and surfaces */
         out[0] = (sph_of(s)->mirrors ? f->pressure[i] : f->mean[i]) + sph_hydrostatic(s, x);
+    } else if (!strcmp(name, "apparent_viscosity")) {
+        out[0] = f->apparent ? f->apparent[i].x : s->fluid[p->fluid[i]].viscosity;
     } else if (!strcmp(name, "density")) {
         out[0] = f->density[i]*s->fluid[p->fluid[i]].density;
     } else {

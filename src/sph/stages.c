@@ -435,8 +435,15 @@ static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *
         for (int a = 0; a < 3; a++) (&f->accel[i].x)[a] += (&f->saved_velocity[i].x)[a];
 }
 
+static void derive_viscosity(tobi_system *s, sph_view *v, const sph_kernels *k)
+{
+    sph_stage(s, v, SPH_DERIVE);
+    sph_viscosity_begin(s, v, k);
+}
+
 void sph_derive(tobi_system *s, sph_view *v, const sph_kernels *k, const char *field)
 {
     if (strcmp(field, "vorticity") == 0) launch(s, v, k->sph_vorticity, NULL);
+    else if (strcmp(field, "apparent_viscosity") == 0) derive_viscosity(s, v, k);
     else derive_acceleration(s, v, k);
 }

@@ -11,7 +11,7 @@
 
 const tobi_output isph_outputs[] = {
     { "acceleration", 3, "m/s2", 1 }, { "vorticity", 3, "1/s", 1 }, { "surface", 1, "1", 0 },
-    { "material", 1, "1", 0 },
+    { "apparent_viscosity", 1, "Pa s", 1 }, { "material", 1, "1", 0 },
     { "viscous_acceleration", 3, "m/s2", 1 }, { "pressure_acceleration", 3, "m/s2", 1 },
     { "divergence", 1, "1/s", 1 }, { "predicted_divergence", 1, "1/s", 1 },
     { "pressure_source", 1, "Pa/m2", 1 },
@@ -23,7 +23,9 @@ static int is(const char *a, const char *b) { return strcmp(a, b) == 0; }
 int isph_fields_know(const char *field)
 {
     for (const tobi_output *o = isph_outputs; o->name; o++)
-        if (is(o->name, field)) return o->derived && !is(field, "acceleration") && !is(field, "vorticity");
+        if (is(o->name, field))
+            return o->derived && !is(field, "acceleration") && !is(field, "vorticity") &&
+                   !is(field, "apparent_viscosity");
     return 0;
 }
 
