@@ -114,8 +114,8 @@ TOBI_API void tobi_rules_beside(const tobi_rules *rules, const tobi_world_def *w
 TOBI_API void tobi_rules_solid(const tobi_rules *rules, const tobi_world_def *world, const void *method_def,
                                const tobi_solid_def *solid);
 
-/* Those of a fluid beside another one, or alone: other NULL; openings: 1 where there are inlets or outlets. Keys are of the
-   fluid. */
+/* Those of a fluid beside another one, or alone: other NULL; openings: 1 where there are inlets or outlets.
+   Keys are of the fluid. */
 TOBI_API void tobi_rules_fluid(const tobi_rules *rules, const tobi_world_def *world,
                                const tobi_fluid_def *fluid, const tobi_fluid_def *other, int openings);
 

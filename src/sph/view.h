@@ -70,8 +70,8 @@ typedef struct sph_view {
     float inverse_density[TOBI_MAX_FLUIDS];   /* m3/kg   */
     float kinematic[TOBI_MAX_FLUIDS];         /* m2/s    */
     float dynamic;                            /* Pa s, of the first */
-    float yield_stress[TOBI_MAX_FLUIDS], flow_index[TOBI_MAX_FLUIDS];      /* Pa, 1: eq. (6) of viscosity.md */
-    float creep_rate[TOBI_MAX_FLUIDS], creep_viscosity[TOBI_MAX_FLUIDS];   /* 1/s, and Pa s without yield stress */
+    float yield_stress[TOBI_MAX_FLUIDS], flow_index[TOBI_MAX_FLUIDS];     /* Pa, 1: viscosity.md, eq. (6) */
+    float creep_rate[TOBI_MAX_FLUIDS], creep_viscosity[TOBI_MAX_FLUIDS];  /* 1/s; Pa s at it, of K alone */
     int   implicit;                           /* 1: viscosity and friction wait for viscosity.k.h */
     float tension[TOBI_MAX_FLUIDS];           /* N/m     */
     float interface_tension[TOBI_MAX_FLUIDS][TOBI_MAX_FLUIDS];    /* N/m, symmetric, 0 on the diagonal */

@@ -1,4 +1,4 @@
-/* Liquids whose viscosity depends on how fast they are sheared. Equation numbers: docs/theory/viscosity.md. */
+/* Liquids whose viscosity depends on the shear rate. Equation numbers: docs/theory/viscosity.md. */
 #pragma once
 #include "exec/series.h"
 #include "sph/viscosity.k.h"

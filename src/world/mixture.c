@@ -57,8 +57,8 @@ tobi_status tobi_mixture_add(const tobi_world *w, const tobi_fluid_def *def, tob
     tobi_error flow = { 0 };
     const char *key = tobi_mixture_check_flow(w->sim.def.implicit_viscosity, def, &flow);
     if (key)
-        return tobi_at_key(err, tobi_fail(err, flow.status, "fluid '%s': %s %s", def->name ? def->name : "", key,
-                                          flow.text), key);
+        return tobi_at_key(err, tobi_fail(err, flow.status, "fluid '%s': %s %s", def->name ? def->name : "",
+                                          key, flow.text), key);
     for (int k = 0; k < s->fluid_count; k++) {
         const tobi_fluid_def other = describe(&s->fluid[k]);
         tobi_error why = { 0 };

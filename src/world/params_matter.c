@@ -10,8 +10,9 @@ static const tobi_param fluid_rows[] = {
     { .key = "density", REAL, AT(tobi_fluid_def, density), .def = { 1000 }, DENSITY,
       .unit = "kg/m3", .doc = "Rest density." },
     { .key = "viscosity", REAL, AT(tobi_fluid_def, viscosity), .def = { 1.0e-3 }, RANGE(0, 1e9),
-      .unit = "Pa s", .doc = "Dynamic viscosity; water at 20 degrees C has 1.0e-3. With a flow_index n it is the "
-                             "consistency, Pa s^n." },
+      .unit = "Pa s",
+      .doc = "Dynamic viscosity; water at 20 degrees C has 1.0e-3. With a flow_index n it is the "
+             "consistency, Pa s^n." },
     { .key = "yield_stress", REAL, AT(tobi_fluid_def, yield_stress), RANGE(0, 1e9), .unit = "Pa",
       .text = "none",
       .doc = "Stress below which the liquid does not flow: fresh concrete has some 500, ketchup 30. It wants "

@@ -115,7 +115,8 @@ static void rig_bind_viscosity(rig *g, const double rho[2], const double nu[2])
     g->view.dynamic = (float)(rho[0]*nu[0]);
     g->view.viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
                                          f->viscous_direction, f->viscous_product, f->viscous_inverse,
-                                         f->viscous_turning, f->viscous_lack, f->viscous_velocity, 1, f->apparent};
+                                         f->viscous_turning, f->viscous_lack, f->viscous_velocity, 1,
+                                         f->apparent};
     for (int k = 0; k < 2; k++) {
         const double yield = 0.1 + 0.3*k, index = k == 0 ? 0.6 : 1, creep = 2;
         g->view.yield_stress[k] = (float)yield; g->view.flow_index[k] = (float)index;

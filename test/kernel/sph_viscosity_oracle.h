@@ -81,7 +81,8 @@ static void oracle_apparent(const oracle *o, const row *in, row *out, double *t)
         for (int a = 0; a < 3; a++) trace += m[a][3 + a]/m[a][a];
         for (int a = 0; a < 3; a++)
             for (int b = 0; b < 3; b++) {
-                const double strain = 0.5*(m[b][3 + a]/m[b][b] + m[a][3 + b]/m[a][a]) - (a == b ? trace/3 : 0);
+                const double mean = 0.5*(m[b][3 + a]/m[b][b] + m[a][3 + b]/m[a][a]);
+                const double strain = mean - (a == b ? trace/3 : 0);
                 square += 2*strain*strain;
             }
         const double faster = sqrt(square + o->creep_rate[f]*o->creep_rate[f]);

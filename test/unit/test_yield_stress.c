@@ -27,7 +27,8 @@ static tobi_world *make_channel(const char *method, const liquid *q, int boxes, 
                  -HALF - room, -HALF, HALF, HALF + room);
     snprintf(text, sizeof text,
              "{\"dimension\": 2, \"domain\": {\"min\": [0, %.17g], \"max\": [%.17g, %.17g],"
-             " \"walls\": {\"x\": \"periodic\", \"y\": \"no-slip\"}}, \"gravity\": [%g, 0], \"spacing\": %.17g,"
+             " \"walls\": {\"x\": \"periodic\", \"y\": \"no-slip\"}}, \"gravity\": [%g, 0],"
+             " \"spacing\": %.17g,"
              " \"end_time\": 5, \"threads\": %d, \"method\": \"%s\", \"implicit_viscosity\": true,"
              " \"fluids\": [{\"name\": \"mud\", \"viscosity\": %g, \"yield_stress\": %g, \"flow_index\": %g,"
              " \"fill\": [{\"box\": {\"min\": [0, %.17g], \"max\": [%.17g, %.17g]}}]}]%s}",
@@ -91,7 +92,8 @@ static void bodies_brake_as_sides_do(void **state)
             compare(w, &mud, &flow[boxes], &middle);
             tobi_world_destroy(w);
         }
-        print_message("%s: flow %.4f of theory between boxes, %.4f between sides\n", methods[m], flow[1], flow[0]);
+        print_message("%s: flow %.4f of theory between boxes, %.4f between sides\n", methods[m], flow[1],
+                      flow[0]);
         assert_float_equal(flow[1], flow[0], 0.03);
     }
 }
