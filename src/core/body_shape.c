@@ -42,7 +42,7 @@ static tobi_status make_round(tobi_body *b, const tobi_body_def *def, int kind, 
     const int disc = kind == SPHERE && dimension == 2;
     tobi_round shape = { .radius = kind == CYLINDER ? def->cylinder_radius
                                    : kind == CAPSULE ? def->capsule_radius : def->sphere_radius,
-                         .round_ends = kind != CYLINDER && !disc };
+                         .round_ends = kind != CYLINDER && !disc, .disc = disc };
     if (dimension == 2 && !disc)
         return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s': a 2-D scene has no cylinders and capsules; a "
                          "sphere is a disc there", b->name);

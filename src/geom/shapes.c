@@ -18,10 +18,11 @@ static int count_parts(double length, double edge)
     return parts < 1 ? 1 : parts > MOST_PARTS ? MOST_PARTS : (int)parts;
 }
 
-static void add_line(profile *p, double s, double r, double edge)
+static void add_line(profile *p, double s, double r, double edge, int disc)
 {
     const double *from = p->at[p->count - 1], begin[2] = { from[0], from[1] };
-    const int parts = count_parts(hypot(s - begin[0], r - begin[1]), edge);
+    int parts = count_parts(hypot(s - begin[0], r - begin[1]), edge);
+    if (disc) parts = s > begin[0] && parts%2 == 0 ? 2 : 1;       /* a ring lies in the middle, or none */
     for (int k = 1; k <= parts; k++, p->count++) {
         const double q = (double)k/parts;
         p->at[p->count][0] = begin[0] + q*(s - begin[0]);
@@ -48,10 +49,10 @@ static tobi_status make_profile(const tobi_round *shape, double length, double e
     p->at[0][0] = shape->round_ends ? -r : 0;
     p->at[0][1] = 0;
     if (shape->round_ends) add_arc(p, 0, r, 0, 0.5*PI, sectors/4);
-    else add_line(p, 0, r, edge);
-    if (length > 0) add_line(p, length, r, edge);
+    else add_line(p, 0, r, edge, shape->disc);
+    if (length > 0) add_line(p, length, r, edge, shape->disc);
     if (shape->round_ends) add_arc(p, length, r, 0.5*PI, PI, sectors/4);
-    else add_line(p, length, 0, edge);
+    else add_line(p, length, 0, edge, shape->disc);
     p->at[p->count - 1][1] = 0;
     return TOBI_OK;
 }

@@ -2,8 +2,9 @@
 #pragma once
 #include "geom/mesh.h"
 
-/* A sphere has start = end. ends: round of a sphere and a capsule, else flat. */
-typedef struct tobi_round { double start[3], end[3], radius; int round_ends; } tobi_round;
+/* A sphere has start = end. ends: round of a sphere and a capsule, else flat. disc: a cylinder of which only
+   the section through its middle counts, which has the pieces that it has of a whole one. */
+typedef struct tobi_round { double start[3], end[3], radius; int round_ends, disc; } tobi_round;
 
 /* A surface of revolution in facets of about `edge`, m, 24 to 256 around. Its volume is that of the shape to
    rounding; its moments of inertia are within 0.2 %. TOBI_INVALID, with name: a cylinder without length. */

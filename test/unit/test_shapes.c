@@ -124,6 +124,11 @@ static void two_dimensions_have_discs_and_plates(void **state)
     set(b.sphere_centre, 0.3, 0.4, 0);
     b.sphere_radius = 0.1;
     tobi_body_info info = add(world, &b);
+    int64_t vertices, triangles;
+    const double (*vertex)[3];
+    const int32_t (*triangle)[3];
+    assert_int_equal(tobi_world_surface(world, 0, &vertices, &vertex, &triangles, &triangle), TOBI_OK);
+    assert_true(triangles <= 6*24);          /* results have them in each output */
     assert_true(fabs(info.volume/(M_PI*0.01) - 1) < 1e-12);
     assert_true(fabs(info.inertia[8]/(1000*M_PI*0.01*0.005) - 1) < 0.001);
     b.sphere_radius = 0;
