@@ -125,10 +125,21 @@ static int write_drawing(const source *s, const char *out)
         ? 0 : complain("%s", err.text);
 }
 
+/* The nearest output to a time that the run has not come to is its last. */
+static void note_end(const draw_options *o, const tobi_results *results)
+{
+    const int64_t last = tobi_results_count(results) - 1;
+    const double end = last >= 0 ? tobi_results_time(results, last) : 0;
+    const double step = last > 0 ? end - tobi_results_time(results, last - 1) : 0;
+    if (o->output < 0 && o->time > end + step)
+        fprintf(stderr, "tobiuo: note: the results of %s end at %g s\n", o->dir, end);
+}
+
 static int draw(const draw_options *o, source *s)
 {
     char *path = NULL;
     int code = open_source(s, o->dir, o->view, &o->set);
+    if (code == 0) note_end(o, s->results);
     if (code == 0) code = draw_output(s, o->dir, find_output(o, s->results));
     if (code != 0) return code;
     const tobi_picture *p = tobi_drawing_picture(s->drawing);

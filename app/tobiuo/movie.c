@@ -190,6 +190,33 @@ static int add_options(const struct kind *kind, int alpha, char **argument, int 
     return n;
 }
 
+/* The first picture that does not end as a PNG does; NULL: none, or no memory. */
+static char *find_damaged(const char *dir, const char *view)
+{
+    static const char end[] = "IEND\xae\x42\x60\x82";
+    const int64_t count = count_pictures(dir, view);
+    for (int64_t k = 0; k < count; k++) {
+        char *path = frame_path(dir, view, k), last[sizeof end] = "";
+        FILE *file = path ? fopen(path, "rb") : NULL;
+        if (file && fseek(file, -(long)(sizeof end - 1), SEEK_END) == 0 &&
+            fread(last, 1, sizeof end - 1, file) < sizeof end - 1) last[0] = '\0';
+        if (file) fclose(file);
+        if (path && memcmp(last, end, sizeof end - 1) != 0) return path;
+        free(path);
+    }
+    return NULL;
+}
+
+/* What ffmpeg did not make, and which picture it may be because of. */
+static int complain_encoder(const char *dir, const char *view, const char *pictures, const char *said)
+{
+    char *damaged = find_damaged(dir, view);
+    if (damaged) complain("%s is damaged; delete it, and the movie draws it anew from the results", damaged);
+    else complain("ffmpeg failed on %s: %s", pictures, said);
+    free(damaged);
+    return EXIT_ERROR;
+}
+
 static int encode(const char *dir, const char *view, const char *part, const struct kind *kind, double rate)
 {
     enum { ARGUMENTS = 32 };
@@ -214,7 +241,7 @@ static int encode(const char *dir, const char *view, const char *part, const str
     argument[n] = NULL;
     char said[TOOL_SAYS];
     int code = run_tool(NULL, argument, "makes the movie", "ffmpeg", 0, said);
-    if (code < 0) code = complain("ffmpeg failed on %s: %s", pictures, said);
+    if (code < 0) code = complain_encoder(dir, view, pictures, said);
     free(filter);
     free(pictures);
     free(file);
@@ -257,6 +284,8 @@ static double check_pictures(const char *dir, int64_t count, int64_t *outputs)
     const double interval = count > 0 ? find_interval(dir, outputs) : 0;
     if (access(dir, F_OK) != 0) complain_run(dir, "there is no run");
     else if (count == 0) complain("%s has no pictures", dir);
+    else if (count > 1 && !(interval > 0))
+        complain("%s/history.csv does not tell the times of two outputs, which a movie needs", dir);
     else if (count < 2 || !(interval > 0)) complain("%s has one output only, which is no movie", dir);
     else return interval;
     return 0;
@@ -270,12 +299,13 @@ static int make_movie_of(const char *dir, const char *at, const char *view, cons
     const double interval = check_pictures(dir, count, &outputs);
     if (!(interval > 0)) return EXIT_ERROR;
     const int code = write_movie(at, view, out, find_kind(out), 1/(interval*slow));
-    if (code == 0 && outputs > count)
+    const int whole = outputs <= count;
+    if (code == 0 && !whole)
         complain("%s ends before output %lld of %lld, whose picture is missing", out, (long long)count,
                  (long long)outputs - 1);
     if (code == 0)
         printf("movie: %s, %lld pictures, %.4g s\n", out, (long long)count, (double)count*interval*slow);
-    return code;
+    return code == 0 && !whole ? EXIT_UNWRITTEN : code;
 }
 
 int make_movie(const char *dir, const char *view, const char *out, double slow, int force)

@@ -79,6 +79,12 @@ END
 }
 expect 1 "has one output only" movie short
 expect 0 "" movie "100%d run"
+cp -r "100%d run" hurt && rm hurt/movie.mp4 hurt/fluid/fluid_000010.vtu hurt/frames/frame_000010.png
+expect 3 "hurt/movie.mp4 ends before output 10 of 10, whose picture is missing" movie hurt
+truncate -s 1000 hurt/frames/frame_000003.png
+expect 1 "frame_000003.png is damaged; delete it, and the movie draws it anew" movie hurt --force
+head -n 1 hurt/history.csv > one.csv && mv one.csv hurt/history.csv
+expect 1 "hurt/history.csv does not tell the times of two outputs, which a movie needs" movie hurt --force
 check "11 pictures of 0.02 s make 0.22 s" is "100%d run/movie.mp4" 11 0.22
 expect 1 "exists; --force replaces it" movie "100%d run"
 expect 0 "" movie "100%d run" --force --slow 10

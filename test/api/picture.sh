@@ -19,7 +19,7 @@ expect 0 "" picture dam --output 1 --out a.png --set output.picture.field=pressu
 expect 0 "" picture dam --time 0 --out first.png
 expect 0 "" picture dam --output 0 --out zero.png
 check "a picture of a time" cmp first.png zero.png
-expect 0 "" picture dam --time 99 --out late.png
+expect 0 "the results of dam end at" picture dam --time 99 --out late.png
 expect 0 "" picture dam --out last.png
 check "a time behind the end" cmp late.png last.png
 expect 2 "--time: 'x' is not a number from 0 on" picture dam --time x
