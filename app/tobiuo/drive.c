@@ -16,7 +16,6 @@ static void catch_signals(void)
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
-    signal(SIGXFSZ, SIG_IGN);       /* a file beyond a limit fails, then, as on a full disk */
 }
 
 int is_interrupted(void) { return caught != 0; }

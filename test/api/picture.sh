@@ -19,6 +19,9 @@ expect 0 "" picture dam --output 1 --out a.png --set output.picture.field=pressu
 expect 0 "" picture dam --time 0 --out first.png
 expect 0 "" picture dam --output 0 --out zero.png
 check "a picture of a time" cmp first.png zero.png
+(ulimit -f 4; exec "$program" picture dam --out narrow.png) > out.txt 2> err.txt
+check "a picture without room is told" grep -q "cannot write narrow.png: File too large" err.txt
+check "and leaves nothing" test -z "$(ls | grep narrow)"
 expect 0 "the results of dam end at" picture dam --time 99 --out late.png
 expect 0 "" picture dam --out last.png
 check "a time behind the end" cmp late.png last.png
