@@ -4,6 +4,7 @@
 #include "scene/source.h"
 #include "scene/python.h"
 #include "scene/spelling.h"
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -80,6 +81,23 @@ static const char *hint_at_line(const char *text, size_t size, int number)
     while (--number > 0 && at < size) at = read_line(text, size, at).end + 1;
     return at < size && read_line(text, size, at).is_foreign
         ? "; if this line belongs to the comment before it, put # in front" : "";
+}
+
+/* Whether the mistake is the bracket that ends at `end`, behind a comma. */
+static int ends_with_comma(const char *text, size_t size, int end)
+{
+    size_t at = end > 0 && (size_t)end <= size ? (size_t)end - 1 : 0;
+    if (at == 0 || (text[at] != '}' && text[at] != ']')) return 0;
+    while (at > 0 && isspace((unsigned char)text[at - 1])) at--;
+    return at > 0 && text[at - 1] == ',';
+}
+
+/* What to do about what jansson says. */
+static const char *hint_at(const tobi_source *source, size_t size, const json_error_t *mistake)
+{
+    if (strstr(mistake->text, "unable to decode")) return "; a scene must be saved as UTF-8";
+    if (ends_with_comma(source->text, size, mistake->position)) return "; remove the comma before it";
+    return hint_at_line(source->text, size, mistake->line);
 }
 
 enum { DEPTH_LIMIT = 32 };
@@ -359,8 +377,7 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
         tobi_report_add(report, 0, "%s:%d:%d: not valid JSON: %s%s", name,
                         mistake.line > 0 ? mistake.line : 1,
                         mistake.column > 0 ? mistake.column : 1, mistake.text,
-                        strstr(mistake.text, "unable to decode") ? "; a scene must be saved as UTF-8"
-                            : hint_at_line(source->text, size, mistake.line));
+                        hint_at(source, size, &mistake));
         return TOBI_INVALID;
     }
     tobi_place root = { 0 };

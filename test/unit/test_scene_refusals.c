@@ -30,6 +30,21 @@ static void expect_start(const char *text, const char *begin)
     if (strncmp(text, begin, strlen(begin)) != 0) fail_msg("%s\ndoes not begin with\n%s", text, begin);
 }
 
+static void a_comma_too_many_is_named(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = { "{ \"a\": 1, // b\n}", "{ \"a\": [1, ] }", "{ \"a\": [1 }" };
+    for (int k = 0; k < 3; k++) {
+        tobi_report *report = NULL;
+        tobi_scene *scene;
+        tobi_error err = { 0 };
+        const char *text = wrong[k];
+        assert_int_not_equal(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, &report, &err), 0);
+        assert_int_equal(strstr(tobi_report_line(report, 0), "remove the comma before it") != NULL, k < 2);
+        tobi_report_free(report);
+    }
+}
+
 #define BOX "\"box\": { \"min\": [0.4, 0.4, 0.4], \"max\": [0.6, 0.6, 0.6] }"
 
 static void keys_are_named(void **state)
@@ -167,6 +182,7 @@ static void names_have_room(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_comma_too_many_is_named),
         cmocka_unit_test(keys_are_named),
         cmocka_unit_test(the_start_names_keys), cmocka_unit_test(the_start_names_motions),
         cmocka_unit_test(rounding_is_no_breach),
