@@ -6,6 +6,7 @@
 #include "sph/stages.h"
 #include "sph/state.h"
 #include "sph/viscous_bodies.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -145,6 +146,19 @@ static void expect_pressure(tobi_system *s, sph_view *v, const sph_kernels *k)
     tobi_loop(s->sim->exec.threads, s->particles.count, 0, add_acceleration, v);
 }
 
+/* What rounding leaves of the residual over the velocity where a liquid hardly creeps: its rows are that many
+   times rho, in float. */
+static double find_rounding(const tobi_system *s)
+{
+    double most = 0;
+    for (int f = 0; f < s->fluid_count; f++) {
+        const tobi_fluid *q = &s->fluid[f];
+        const double mu = q->viscosity*pow(q->creep_rate, q->flow_index - 1) + q->yield_stress/q->creep_rate;
+        most = fmax(most, mu/q->density);
+    }
+    return FLT_EPSILON*s->dt*most*s->smoothing.rate;
+}
+
 void sph_viscosity_solve(tobi_system *s, sph_view *v, const sph_kernels *k, void (*expect)(tobi_system *s))
 {
     static const tobi_cg_steps steps = { ends, precondition, turn, apply, advance };
@@ -158,6 +172,7 @@ void sph_viscosity_solve(tobi_system *s, sph_view *v, const sph_kernels *k, void
     sph_viscous_bodies_begin(s);
     find_residual(&q, t, 1);
     q.goal = fmin(MOST*MOST*t[2], fmax(TOLERANCE*TOLERANCE*q.residual, LEAST*LEAST*t[2]));
+    if (v->viscous.apparent) q.goal = fmax(q.goal, find_rounding(s)*find_rounding(s)*t[2]);
     tobi_cg_iterate(&steps, &q);
     find_residual(&q, t, 0);
     launch(&q, k->sph_viscous_finish, t);
