@@ -112,6 +112,7 @@ TOBI_API const char *tobi_world_line(const tobi_world *world, int line, tobi_lin
 /* Adds a joint, after the bodies that it names. TOBI_INVALID if they are not there, if `body` is prescribed,
    or for an axis that its kind does not have; TOBI_UNSUPPORTED if one deforms or is absent at times. */
 TOBI_API tobi_status tobi_world_add_joint(tobi_world *world, const tobi_joint_def *def, tobi_error *err);
+/* Of joints, and then of bodies with a hinge or guide of their own, which have the name of the body. */
 TOBI_API int tobi_world_joint_count(const tobi_world *world);
 /* Name and, if info is not NULL, values after the last step; NULL past the end. */
 TOBI_API const char *tobi_world_joint(const tobi_world *world, int joint, tobi_joint_info *info);

@@ -220,6 +220,7 @@ void tobi_joint_drift(tobi_rigid *r, double dt)
     const double keep = tobi_rigid_keep(r, dt), rate = tobi_joint_rate(r);
     const double *push = j->kind == TOBI_JOINT_HINGE ? r->turn : r->push;
     double s[6];
+    tobi_joint_load_open(r);
     tobi_joint_span(r, j->freedom);
     tobi_joint_freedom(r, s);
     j->held = vec3_dot(r->pull, r->pull) + vec3_dot(r->pull_torque, r->pull_torque) == 0;
@@ -237,6 +238,7 @@ void tobi_joint_kick(tobi_rigid *r, double dt, const double impulse[6], const do
     const tobi_joint *j = &r->joint;
     const double now = tobi_joint_pull(r), pull = j->driven ? j->pull : j->held ? now : 0.5*(j->pull + now);
     double S[6];
+    tobi_joint_load_kick(r, dt, impulse, damped);
     tobi_joint_span(r, S);
     const double change = dt*pull + (dot6(j->freedom, impulse) + dt*dot6(S, damped))/j->mass;
     tobi_joint_set_rate(r, tobi_rigid_keep(r, dt)*(tobi_joint_rate(r) + change));
@@ -250,8 +252,10 @@ void tobi_joint_stop(tobi_rigid *r, double dt, double bounce, const double impul
     tobi_joint_span(r, S);
     tobi_joint_freedom(r, s);
     if (dot6(s, s) == 0) rate += dot6(S, impulse)/r->joint.mass;
+    r->joint.stopped -= r->joint.mass*rate;
     if (rate*stop > 0)
         rate = rate*stop > bounce*fabs(tobi_joint_pull(r))*dt ? -r->restitution*rate : 0;
+    r->joint.stopped += r->joint.mass*rate;
     tobi_joint_set_rate(r, rate);
 }
 

@@ -24,6 +24,11 @@ typedef struct tobi_joint {
     double pull;                     /* rad/s2 or m/s2: of the pull there                                */
     int held;                        /* 1: contact answers the pull                                      */
     int driven;                      /* 1: a liquid has set the drift                                    */
+    double before[3];                /* m: the centre where the drift began                              */
+    double momentum[6];              /* kg m/s, kg m2/s about the point, where the drift began           */
+    double other[6];                 /* N s, N m s about the point: of all but the bearing, in this step */
+    double stopped;                  /* N m s or N s along q: of the stop, in this step                  */
+    tobi_joint_info info;            /* of the bearing and its stop                                      */
 } tobi_joint;
 
 /* From a definition with a hinge or a guide; after mass and inertia. lower: corner of the domain, m. */
@@ -54,5 +59,17 @@ void tobi_joint_kick(struct tobi_rigid *r, double dt, const double impulse[6], c
 /* Stops: a body that runs into one bounces by its restitution, or rests if it is slower than `bounce` times
    its pull. impulse: what contact gave a body that rested, N s and N m s. */
 void tobi_joint_stop(struct tobi_rigid *r, double dt, double bounce, const double impulse[6]);
+
+/* joint_load.c, the load of the bearing by what else acts: where the drift begins. */
+void tobi_joint_load_open(struct tobi_rigid *r);
+/* Before the kick, with the pull of the step before. */
+void tobi_joint_load_begin(struct tobi_rigid *r, double dt);
+/* As tobi_joint_kick, which calls it. */
+void tobi_joint_load_kick(struct tobi_rigid *r, double dt, const double impulse[6], const double damped[6]);
+/* Impulse and twist about the centre (N s, N m s) of contact and joints to other bodies, after the kick. */
+void tobi_joint_load_add(struct tobi_rigid *r, const double impulse[6]);
+/* After the step, dt long, s; 0: the load is not known. */
+void tobi_joint_report(struct tobi_rigid *r, double dt);
+
 /* s: a third of a radian of the spring's swing; INFINITY without. */
 double tobi_joint_step_limit(const struct tobi_rigid *r);

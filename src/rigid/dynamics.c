@@ -139,6 +139,7 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
     tobi_line_load now = { 0 }, mean = { 0 };
     double impulse[6];
     const int body = (int)(b - d->bodies);
+    if (r->joint.kind) tobi_joint_load_begin(r, dt);
     add_loads(d, body, TOBI_LINES_NOW, &now);
     add_loads(d, body, TOBI_LINES_MEAN, &mean);
     for (int a = 0; a < 3; a++) {
@@ -372,7 +373,9 @@ static void stop_joint(tobi_body *b, double dt)
         impulse[a] = dt*b->info.contact_force[a];
         impulse[3 + a] = dt*b->info.contact_torque[a];
     }
+    tobi_joint_load_add(&b->rigid, impulse);
     tobi_joint_stop(&b->rigid, dt, PLASTIC, impulse);
+    tobi_joint_report(&b->rigid, dt);
 }
 
 tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_error *err)

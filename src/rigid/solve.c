@@ -147,6 +147,7 @@ static void finish_joints(tobi_constraints *c, tobi_body *bodies)
         tobi_constraints_add_load(c, k, f);
         tobi_rigid *r = &bodies[c->body[k]].rigid;
         vec3_add_scaled(r->momentum, r->momentum, 1, f + 3);
+        if (r->joint.kind) tobi_joint_load_add(r, f);
     }
     tobi_constraints_count(c);
 }

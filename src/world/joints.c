@@ -1,4 +1,5 @@
-/* Joints between bodies: added by definition after the bodies that they hold, read by number. Drawback: what
+/* Joints between bodies: added by definition after the bodies that they hold, read by number; then those that
+   bodies have of their own. Drawback: what
    a body's own hinge or guide leaves it may contradict a joint, which then gives way and is told as a gap. */
 #include "base/error.h"
 #include "base/param.h"
@@ -129,11 +130,30 @@ tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_
     return TOBI_OK;
 }
 
-int tobi_world_joint_count(const tobi_world *w) { return w ? w->sim.constraints.count : 0; }
+int tobi_world_joint_count(const tobi_world *w)
+{
+    int count = w ? w->sim.constraints.count : 0;
+    for (int k = 0; w && k < w->sim.body_count; k++) count += w->sim.bodies[k].rigid.joint.kind != 0;
+    return count;
+}
+
+/* The joint of its own of some body, by number; NULL past the end. */
+static const char *find_own(const tobi_world *w, int number, tobi_joint_info *info)
+{
+    for (int k = 0; k < w->sim.body_count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        if (!b->rigid.joint.kind || number-- > 0) continue;
+        if (info) *info = b->rigid.joint.info;
+        return b->name;
+    }
+    return NULL;
+}
 
 const char *tobi_world_joint(const tobi_world *w, int joint, tobi_joint_info *info)
 {
-    if (!w || joint < 0 || joint >= w->sim.constraints.count) return NULL;
-    if (info) *info = w->sim.constraints.at[joint].info;
-    return w->sim.constraints.at[joint].name;
+    if (!w || joint < 0) return NULL;
+    const tobi_constraints *c = &w->sim.constraints;
+    if (joint >= c->count) return find_own(w, joint - c->count, info);
+    if (info) *info = c->at[joint].info;
+    return c->at[joint].name;
 }

@@ -201,6 +201,7 @@ tobi_status tobi_world_take_bodies(tobi_world *w, tobi_loaded_bodies *l, tobi_er
     tobi_absorb_restore(w);
     if (w->dynamics) tobi_rigid_follow(w->dynamics);
     tobi_constraints_report(&w->sim.constraints, w->sim.bodies, 0);
+    for (int k = 0; k < l->count; k++) tobi_joint_report(&w->sim.bodies[k].rigid, 0);
     return TOBI_OK;
 }
 

@@ -43,6 +43,9 @@ tobi_status tobi_names_check_joint(const tobi_world *w, const char *name, tobi_e
     const tobi_constraints *c = &w->sim.constraints;
     for (int k = 0; k < c->count; k++)
         if (strcmp(c->at[k].name, name) == 0) return refuse("joint", "joint", k, name, err);
+    const int body = tobi_world_find_body(w, name);
+    if (body >= 0 && w->sim.bodies[body].rigid.joint.kind)      /* both in joints.csv */
+        return refuse("joint", "body", body, name, err);
     return TOBI_OK;
 }
 

@@ -399,6 +399,98 @@ static void a_program_cannot_hold_a_hinge(void **state)
     rig_close(&g);
 }
 
+/* --- loads of bearings -------------------------------------------------------------------------- */
+
+/* m g along the rod by its angle, and m v^2/L; across it m g sin less m L times the angular acceleration. */
+static void a_hinge_tells_the_load_of_a_pendulum(void **state)
+{
+    (void)state;
+    const double inertia = 1.0/12*(1 + 0.02*0.02) + 0.25, dt = 1e-3;
+    for (int k = 0; k < 2; k++) {
+        rig g;
+        rig_open(&g, 4, downward);
+        tobi_body *b = hang_rod(&g, rig_def(), k ? 1.2 : 0);
+        const tobi_joint_info *info = &b->rigid.joint.info;
+        rig_start(&g);
+        for (int i = 0; i < 2000; i++) {
+            const double before = tobi_joint_position(&b->rigid), rate = tobi_joint_rate(&b->rigid);
+            rig_step(&g, dt);
+            /* the rod hangs straight down at -1.2 from where it starts */
+            const double q = 0.5*(before + tobi_joint_position(&b->rigid)) + (k ? 1.2 : 0),
+                         w = 0.5*(rate + tobi_joint_rate(&b->rigid)), s = sin(q), c = cos(q);
+            const double along = 10*c + 0.5*w*w, across = 10*s - 0.5*10*0.5*s/inertia;
+            const double *f = info->force, *m = info->moment;
+            assert_true(fabs(s*f[0] + c*f[2] - along) < 5e-5 && fabs(f[1]) < 1e-12);
+            assert_true(fabs(-c*f[0] + s*f[2] - across) < 5e-5);
+            assert_true(fabs(m[0]) + fabs(m[1]) + fabs(m[2]) < 1e-10);
+        }
+        assert_true(k || fabs(info->force[2] - 10) < 1e-12);
+        rig_close(&g);
+    }
+}
+
+/* A rod lies level on its stop: the arm of its weight is half of its length. A spring is not told. */
+static void a_stop_tells_its_moment(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        rig g;
+        tobi_body_def def = rig_def();
+        def.hinge_lower = -0.001;
+        def.hinge_upper = 60;
+        def.hinge_stiffness = k ? 0.5 : 0;
+        rig_open(&g, 4, downward);
+        tobi_body *b = hang_rod(&g, def, acos(0));
+        rig_start(&g);
+        rig_advance(&g, 1);
+        const tobi_joint_info *i = &b->rigid.joint.info;
+        assert_true(fabs(i->angle + 0.001) < 1e-9);
+        assert_true(fabs(i->force[2] - 10) < 1e-9 && fabs(i->force[0]) < 1e-9);
+        assert_true(fabs(i->moment[1] - (5 - (k ? 0.5*0.001*acos(-1)/180 : 0))) < 1e-6);
+        rig_close(&g);
+    }
+}
+
+/* A cube of 1 kg slides down a slope of 4 in 5 and is wrung: the guide bears m g cos, and the torque. Air
+   brakes along the guide alone. */
+static void a_guide_tells_its_load(void **state)
+{
+    (void)state;
+    rig g;
+    tobi_body_def def = rig_def();
+    def.guide_axis[0] = 3;
+    def.guide_axis[2] = -4;
+    def.air_resistance = 0.5;
+    memcpy(def.torque, (double[3]){ 1, 2, 3 }, sizeof def.torque);
+    rig_open(&g, 4, downward);
+    const tobi_joint_info *i = &slide_cube(&g, def)->rigid.joint.info;
+    rig_start(&g);
+    rig_advance(&g, 0.1);
+    assert_true(fabs(i->force[0] - 6*0.8) < 1e-9 && fabs(i->force[2] - 6*0.6) < 1e-9);
+    for (int a = 0; a < 3; a++) assert_true(fabs(i->moment[a] + 1 + a) < 1e-9);
+    rig_close(&g);
+}
+
+/* After the joints of the world, by the name of the body, which no joint may have then. */
+static void a_world_tells_the_loads(void **state)
+{
+    (void)state;
+    tobi_error err = { 0 };
+    tobi_joint_info info;
+    tobi_world *w = float_disc("wcsph", 1, &err);
+    tobi_joint_def joint = tobi_default_joint_def();
+    joint.name = joint.body = "body";
+    assert_int_equal(tobi_world_add_joint(w, &joint, &err), TOBI_INVALID);
+    assert_string_equal(err.text, "joint 'body': body 0 has that name already");
+    assert_int_equal(tobi_world_joint_count(w), 1);
+    assert_string_equal(tobi_world_joint(w, 0, NULL), "body");
+    find_height(w, 0.01);
+    assert_non_null(tobi_world_joint(w, 0, &info));
+    assert_true(info.force[0] != 0 && info.force[1] == 0);          /* the water is not even */
+    assert_null(tobi_world_joint(w, 1, NULL));
+    tobi_world_destroy(w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -416,6 +508,10 @@ int main(void)
         cmocka_unit_test(mistakes_are_refused),
         cmocka_unit_test(axes_in_2d_are_refused),
         cmocka_unit_test(a_program_cannot_hold_a_hinge),
+        cmocka_unit_test(a_hinge_tells_the_load_of_a_pendulum),
+        cmocka_unit_test(a_stop_tells_its_moment),
+        cmocka_unit_test(a_guide_tells_its_load),
+        cmocka_unit_test(a_world_tells_the_loads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

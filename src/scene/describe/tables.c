@@ -62,8 +62,8 @@ static const char head[] =
     "| `bodies.csv` | each body, a row per output and body | with bodies |\n"
     "| `solids.csv` | each solid, a row per output and solid | with solids beside fluids |\n"
     "| `probes.csv` | sensors, a row per step or `output.probe_interval` | with probes |\n"
-    "| `lines.csv`, `joints.csv` | lines and joints, as many rows as `probes.csv` | with lines, with "
-    "joints |\n"
+    "| `lines.csv`, `joints.csv` | lines; joints, hinges and guides; as many rows as `probes.csv` | with "
+    "lines; with joints, hinges or guides |\n"
     "| `fluid.pvd` | particles of the fluids and solids over time; `.vtu` in `fluid/` | with "
     "fluids or solids |\n"
     "| `bodies.pvd` | particles of the bodies over time; `.vtu` in `bodies/` | with bodies |\n"
@@ -110,7 +110,7 @@ static const char sensors[] =
 static const char joined[] =
     "\n## lines.csv and joints.csv\n\n"
     "The first column is `time [s]`. The others begin with the name of the\n"
-    "[line](lines.md) or [joint](joints.md).\n\n"
+    "[line](lines.md) or [joint](joints.md), or that of the body with the hinge or guide.\n\n"
     "| column | unit | meaning |\n|---|---|---|\n";
 
 static const struct { const char *topic, *file, *doc; tobi_table table; } tables[] = {
