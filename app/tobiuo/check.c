@@ -1,5 +1,6 @@
 /* tobiuo check SCENE: what a run would be, from its first steps at most. */
 #include "app.h"
+#include "tobiuo/matter.h"
 #include "tobiuo/params.h"
 #include <math.h>
 #include <stdio.h>
@@ -39,6 +40,42 @@ static void print_solids(const tobi_world *world, int dimension)
                (long long)solid.particles, solid.mass, dimension == 3 ? "kg" : "kg/m", solid.density);
         printf(solid.time_step < 1.0 ? ", time step at most %.3g s\n" : "\n", solid.time_step);
     }
+}
+
+/* Where it floats upright, and how stiffly: GM about the axes that it may turn about. */
+static void print_flotation(const tobi_body_matter *m)
+{
+    static const char *const axes[] = { "x", "y", "z" };
+    const char *and = "";
+    if (!(m->draught > 0.0)) return;
+    printf("; floats with a draught of %.4g m, GM ", m->draught);
+    for (int a = 0; a < 3; a++) {
+        if (m->metacentre[a] == 0.0) continue;
+        printf("%s%.4g m about %s", and, m->metacentre[a], axes[a]);
+        and = ", ";
+    }
+}
+
+/* Of bodies that move by forces. */
+static void print_bodies(const tobi_world *world, int dimension)
+{
+    enum { LISTED = 12 };
+    const char *each = dimension == 3 ? "" : "/m";
+    tobi_body_matter m;
+    int count = 0;
+    for (int k = 0; tobi_world_body_matter(world, k, &m) == TOBI_OK; k++) {
+        if (m.dynamics == TOBI_PRESCRIBED || ++count > LISTED) continue;
+        printf("body             %s: %.4g kg%s, %.4g m3%s", tobi_world_body_name(world, k), m.mass, each,
+               m.volume, each);
+        if (m.liquid > 0.0) printf(", %.4g of the liquid's density", m.mass / m.volume / m.liquid);
+        printf(", centre of mass %.4g %.4g %.4g m", m.centre[0], m.centre[1], m.centre[2]);
+        if (dimension == 3)
+            printf(", inertia %.4g %.4g %.4g kg m2", m.inertia[0], m.inertia[4], m.inertia[8]);
+        else printf(", inertia %.4g kg m2/m", m.inertia[8]);
+        print_flotation(&m);
+        printf("\n");
+    }
+    if (count > LISTED) printf("body             and %d more that move by forces\n", count - LISTED);
 }
 
 /* The first steps of a run, and what they tell of all. */
@@ -100,6 +137,7 @@ static void print_scene(const tobi_scene *scene, const tobi_world *world, const 
     printf("spacing          %g m\n", d->spacing);
     print_step(d, world, t);
     print_solids(world, d->dimension);
+    print_bodies(world, d->dimension);
     print_notes(world, stdout, "note             ");
     if (tobi_scene_import_table(scene))
         printf("\nA scene of %s. What became of its keys:\n\n%s\n", tobi_scene_import_program(scene),
@@ -212,8 +250,8 @@ const struct argp check_argp = {
     .parser = parse,
     .args_doc = "SCENE",
     .doc =
-        "Check a scene without running it: every mistake, particle counts, memory, time step, size of "
-        "the results, time that a run takes."
+        "Check a scene without running it: every mistake, particle counts, mass and draught of bodies, "
+        "memory, time step, size of the results, time that a run takes."
 };
 
 int tobiuo_check(int argc, char **argv)

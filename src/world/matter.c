@@ -1,0 +1,63 @@
+/* What a body is made of and how it floats, told before a run. Drawback: upright as it starts, in the only
+   liquid of the world; that it trims or lists is not found. */
+#include "base/error.h"
+#include "geom/flotation.h"
+#include "tobiuo/matter.h"
+#include "world/world.h"
+#include <math.h>
+#include <string.h>
+
+/* kg/m3, of the only liquid; 0: none or several. */
+static double find_liquid(const tobi_world *w)
+{
+    int count = 0;
+    double density = 0;
+    for (int k = 0; k < w->system_count; k++) {
+        count += w->system[k].fluid_count;
+        if (w->system[k].fluid_count > 0) density = w->system[k].fluid[0].density;
+    }
+    return count == 1 ? density : 0;
+}
+
+/* The axis that gravity is along, and which way is up; -1: along none. */
+static int find_up(const tobi_world *w, int *sign)
+{
+    int up = -1, count = 0;
+    for (int a = 0; a < 3; a++) {
+        const double g = w->sim.def.gravity[a];
+        if (g == 0) continue;
+        up = a;
+        *sign = g < 0 ? 1 : -1;
+        count++;
+    }
+    return count == 1 ? up : -1;
+}
+
+static void find_flotation(const tobi_world *w, const tobi_body *b, tobi_body_matter *m)
+{
+    tobi_error unused = { 0 };
+    tobi_flotation f;
+    int sign = 1;
+    const int up = find_up(w, &sign), dimension = w->system[0].box.dimension;
+    m->liquid = find_liquid(w);
+    if (!(m->liquid > 0) || up < 0 || !(m->mass < m->liquid*m->volume)) return;
+    if (b->vessel || b->deforms || b->mesh.overlapping || b->rigid.joint.kind) return;
+    const double displaced = m->mass/m->liquid;
+    if (tobi_flotation_find(&b->mesh, dimension, up, sign, displaced, &f, &unused) != TOBI_OK) return;
+    m->draught = f.draught;
+    for (int a = 0; a < 3; a++)
+        if (a != up && (dimension == 3 || a == 2))
+            m->metacentre[a] = f.inertia[a]/displaced + f.buoyancy - sign*(m->centre[up] - f.lowest);
+}
+
+tobi_status tobi_world_body_matter(const tobi_world *w, int body, tobi_body_matter *m)
+{
+    if (!w || !m) return TOBI_INVALID;
+    if (body < 0 || body >= w->sim.body_count) return TOBI_NOT_FOUND;
+    const tobi_body *b = &w->sim.bodies[body];
+    *m = (tobi_body_matter){ .dynamics = b->rigid.kind, .mass = b->info.mass, .volume = b->info.volume };
+    memcpy(m->centre, b->rest.centre, sizeof m->centre);
+    memcpy(m->inertia, b->info.inertia, sizeof m->inertia);
+    if (b->rigid.kind != TOBI_PRESCRIBED) find_flotation(w, b, m);
+    return TOBI_OK;
+}
