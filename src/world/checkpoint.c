@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* To be raised whenever what a checkpoint holds changes; 0: from before there was a number. */
-enum { FORMAT = 12, CLOCK = 5 };
+enum { FORMAT = 13, CLOCK = 5 };
 
 static tobi_status check_format(tobi_store *f, const char *path, tobi_error *err)
 {

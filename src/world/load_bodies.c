@@ -36,6 +36,34 @@ static tobi_status check_same(const tobi_body *b, const tobi_body_info *then, to
                      (long long)b->particle_count);
 }
 
+static int differ(const double *a, const double *b, int count, double size)
+{
+    for (int k = 0; k < count; k++)
+        if (!(fabs(a[k] - b[k]) <= 1e-9*size)) return 1;
+    return 0;
+}
+
+/* A given centre of mass or inertia that was changed. The inertia of a swimmer is that of its shape. */
+static tobi_status check_matter(const tobi_body *b, int k, tobi_store *f, const tobi_body_info *then,
+                                tobi_error *err)
+{
+    const double *m = b->rigid.inertia, *n = then->inertia, *now = b->middle;
+    double middle[3];
+    char name[32];
+    if (!b->swimmer && differ(m, n, 9, fabs(m[0]) + fabs(m[4]) + fabs(m[8])))
+        return tobi_fail(err, TOBI_INVALID, "the checkpoint is of another scene: the inertia of body '%s' is "
+                         "(%.10g, %.10g, %.10g) kg m2 with products (%.10g, %.10g, %.10g) in it, (%.10g, "
+                         "%.10g, %.10g) with (%.10g, %.10g, %.10g) in the scene", b->name, n[0], n[4], n[8],
+                         n[1], n[2], n[5], m[0], m[4], m[8], m[1], m[2], m[5]);
+    tobi_world_name_body(k, "_middle", name);
+    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, 3, 1, middle, err));
+    if (!differ(now, middle, 3, cbrt(b->rest.volume))) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "the checkpoint is of another scene: in it the middle of body '%s' "
+                     "lies (%.10g, %.10g, %.10g) m from its centre of mass, in the scene (%.10g, %.10g, "
+                     "%.10g) m; was its centre_of_mass changed?", b->name, middle[0], middle[1], middle[2],
+                     now[0], now[1], now[2]);
+}
+
 static tobi_status read_state(const tobi_body *b, int k, tobi_store *f, tobi_loaded_body *l, tobi_error *err)
 {
     char name[32];
@@ -46,6 +74,7 @@ static tobi_status read_state(const tobi_body *b, int k, tobi_store *f, tobi_loa
     tobi_world_name_body(k, "", name);
     TOBI_TRY(tobi_store_get(f, name, TOBI_U8, (int64_t)sizeof l->info, 1, &l->info, err));
     TOBI_TRY(check_same(b, &l->info, err));
+    TOBI_TRY(check_matter(b, k, f, &l->info, err));
     int good = 1;
     for (int i = 0; i < TOBI_RIGID_DOUBLES; i++) good &= isfinite(l->state[i]) != 0;
     for (int i = 0; i < 7; i++) good &= isfinite(l->load[i]) != 0;

@@ -289,6 +289,42 @@ static void test_damaged(void **state)
     destroy(&s);
 }
 
+static tobi_world *open_box(double centre, double inertia)
+{
+    tobi_world_def d = tobi_default_world_def();
+    tobi_body_def b = tobi_default_body_def();
+    tobi_error err = { 0 };
+    tobi_world *w;
+    d.method = "mlsmpm";
+    d.spacing = 0.1;
+    for (int a = 0; a < 3; a++) d.domain_max[a] = 2, b.box_min[a] = 0.8, b.box_max[a] = 1.2, b.inertia[a] = 2;
+    b.dynamics = TOBI_FREE;
+    b.centre_of_mass[0] = b.centre_of_mass[1] = 1;
+    b.centre_of_mass[2] = centre;
+    b.inertia[1] = inertia;
+    assert_int_equal(tobi_world_create(&d, NULL, &w, &err), TOBI_OK);
+    assert_int_equal(tobi_world_add_body(w, &b, &err), TOBI_OK);
+    return w;
+}
+
+/* A body that is given another inertia or centre of mass does not go on. */
+static void test_changed_matter(void **state)
+{
+    (void)state;
+    static const double centre[] = { 0.9, 0.9, 0.95 }, inertia[] = { 2, 2.5, 2 };
+    static const char *const says[] = { "", "body 'body' is (2, 2, 2) kg m2 with products (0, 0, 0) in it, "
+        "(2, 2.5, 2) with", "the middle of body 'body' lies (0, 0, 0.1) m from its centre of mass" };
+    tobi_error err = { 0 };
+    for (int k = 0; k < 3; k++) {
+        tobi_world *w = open_box(centre[k], inertia[k]);
+        if (k == 0) assert_int_equal(tobi_world_save(w, "bodies.h5", &err), TOBI_OK);
+        assert_int_equal(tobi_world_load(w, "bodies.h5", &err), k ? TOBI_INVALID : TOBI_OK);
+        if (!strstr(err.text, says[k])) fail_msg("%s", err.text);
+        tobi_world_destroy(w);
+    }
+    remove("bodies.h5");
+}
+
 /* Overlaps at the start are said and pushed apart. */
 static void test_overlap(void **state)
 {
@@ -548,7 +584,7 @@ int main(void)
         cmocka_unit_test(test_restart), cmocka_unit_test(test_control_script), cmocka_unit_test(test_refused),
         cmocka_unit_test(test_scene_mistakes), cmocka_unit_test(test_damaged),
         cmocka_unit_test(test_overlap), cmocka_unit_test(test_deep_overlap),
-        cmocka_unit_test(test_search_given_up),
+        cmocka_unit_test(test_search_given_up), cmocka_unit_test(test_changed_matter),
         cmocka_unit_test(test_balls_overlap), cmocka_unit_test(test_plane),
         cmocka_unit_test(test_projectile), cmocka_unit_test(test_free_fall),
     };
