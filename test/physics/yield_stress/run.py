@@ -71,7 +71,7 @@ for method in "dfsph", "isph":
                            (f"isph, {2*layers} layers", [abs(y) for y in ys], us, True)]
 case.plot("Bingham liquid in a channel", "distance from the middle, m", "m/s", curves)
 for method in "dfsph", "isph":
-    for layers in case.pick((8,), (10, 16, 24)):
+    for layers in case.pick((8,), (10, 16)):
         for share in case.pick((0.1,), (0.1, 0.2)):
             times, lost = slump(method, layers, share)
             exact = 1 - 2*share*(1 - math.log(2*share))
