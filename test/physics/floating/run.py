@@ -40,7 +40,7 @@ def free_fall(density):
 # --- a sphere in a full vessel, and one with a free surface above it ------------------------------
 mesh = {"mesh": str(case.folder.parents[1] / "meshes" / "sphere.obj"), "scale": SIDE}
 curves = []
-for density, end in case.pick(((500, 0.1), (50, 0.04)), ((500, 0.1), (2000, 0.1), (50, 0.04))):
+for density, end in (500, 0.1), (2000, 0.1), (50, 0.04):
     for across in case.pick((10,), (6, 10)):
         label = f"sphere_{density}_{across}"
         scene = write(label, [0.4]*3, 0.4, [body(density, translation=[0.2]*3, **mesh)], SIDE/across, end)
