@@ -146,8 +146,8 @@ static void expect_pressure(tobi_system *s, sph_view *v, const sph_kernels *k)
     tobi_loop(s->sim->exec.threads, s->particles.count, 0, add_acceleration, v);
 }
 
-/* What rounding leaves of the residual over the velocity where a liquid hardly creeps: its rows are that many
-   times rho, in float. */
+/* What float leaves of the residual, over the velocity, where a liquid hardly creeps: the diagonal over rho,
+   times its rounding. */
 static double find_rounding(const tobi_system *s)
 {
     double most = 0;
@@ -156,7 +156,7 @@ static double find_rounding(const tobi_system *s)
         const double mu = q->viscosity*pow(q->creep_rate, q->flow_index - 1) + q->yield_stress/q->creep_rate;
         most = fmax(most, mu/q->density);
     }
-    return FLT_EPSILON*s->dt*most*s->smoothing.rate;
+    return FLT_EPSILON*s->dt*most*4*s->smoothing.rate;
 }
 
 void sph_viscosity_solve(tobi_system *s, sph_view *v, const sph_kernels *k, void (*expect)(tobi_system *s))
@@ -172,14 +172,15 @@ void sph_viscosity_solve(tobi_system *s, sph_view *v, const sph_kernels *k, void
     sph_viscous_bodies_begin(s);
     find_residual(&q, t, 1);
     q.goal = fmin(MOST*MOST*t[2], fmax(TOLERANCE*TOLERANCE*q.residual, LEAST*LEAST*t[2]));
-    if (v->viscous.apparent) q.goal = fmax(q.goal, find_rounding(s)*find_rounding(s)*t[2]);
     tobi_cg_iterate(&steps, &q);
     find_residual(&q, t, 0);
+    const double rounding = v->viscous.apparent ? find_rounding(s)*sqrt(t[2]) : 0;
     launch(&q, k->sph_viscous_finish, t);
     for (int a = 0; a < 3; a++) sph_of(s)->friction[a] = t[a]/s->dt;
     sph_viscous_bodies_keep(s);
     s->info.viscosity_iterations = q.iterations;
-    s->info.viscosity_failed = !(q.residual <= 4*q.goal);      /* the true residual, in float */
+    /* the true residual, in float */
+    s->info.viscosity_failed = !(q.residual <= 4*fmax(q.goal, rounding*rounding));
 }
 
 typedef struct adding { const tobi_system *s; float share; } adding;

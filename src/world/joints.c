@@ -1,6 +1,6 @@
-/* Joints between bodies: added by definition after the bodies that they hold, read by number; then those that
-   bodies have of their own. Drawback: what
-   a body's own hinge or guide leaves it may contradict a joint, which then gives way and is told as a gap. */
+/* Joints between bodies: added by definition after the bodies that they hold, read by number; then those
+   that bodies have of their own. Drawback: what a body's own hinge or guide leaves it may contradict a joint,
+   which then gives way and is told as a gap. */
 #include "base/error.h"
 #include "base/param.h"
 #include "core/constraint.h"

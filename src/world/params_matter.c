@@ -22,8 +22,8 @@ static const tobi_param fluid_rows[] = {
              "sheared. Other than 1 it wants implicit_viscosity." },
     { .key = "creep_rate", REAL, AT(tobi_fluid_def, creep_rate), .def = { 0.01 }, RANGE(1e-6, 1e6),
       .positive = true, .unit = "1/s",
-      .doc = "Shear rate below which the viscosity grows no more: so fast a liquid creeps at its yield "
-             "stress." },
+      .doc = "Shear rate below which the viscosity grows no more: so fast a liquid creeps under 0.7 of its "
+             "yield stress." },
     { .key = "surface_tension", REAL, AT(tobi_fluid_def, surface_tension), RANGE(0, 1e6), .unit = "N/m",
       .text = "none",
       .doc = "Tension of the free surface; water at 20 degrees C has 0.0728. It wants a support of "
