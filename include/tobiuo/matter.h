@@ -8,8 +8,8 @@ extern "C" {
 #endif
 
 /* A body as it starts. From draught on 0 where it does not float upright in the only liquid of the world, or
-   that is not known: for vessels, bodies that deform, have a hinge or guide, or a mesh with parts that
-   overlap. */
+   that is not known: for vessels, bodies that deform, have a hinge, a guide or a joint, or a mesh with parts
+   that overlap. */
 typedef struct tobi_body_matter {
     int dynamics;                 /* tobi_dynamics                                                    */
     double mass, volume;          /* kg, m3; in 2-D per metre of depth                                */

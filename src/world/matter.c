@@ -33,13 +33,20 @@ static int find_up(const tobi_world *w, int *sign)
     return count == 1 ? up : -1;
 }
 
+static int is_joined(const tobi_world *w, int body)
+{
+    const tobi_constraints *c = &w->sim.constraints;
+    for (int k = 0; k < c->count; k++)
+        if (c->at[k].body[0] == body || c->at[k].body[1] == body) return 1;
+    return 0;
+}
+
 static void find_flotation(const tobi_world *w, const tobi_body *b, tobi_body_matter *m)
 {
     tobi_error unused = { 0 };
     tobi_flotation f;
     int sign = 1;
     const int up = find_up(w, &sign), dimension = w->system[0].box.dimension;
-    m->liquid = find_liquid(w);
     if (!(m->liquid > 0) || up < 0 || !(m->mass < m->liquid*m->volume)) return;
     if (b->vessel || b->deforms || b->mesh.overlapping || b->rigid.joint.kind) return;
     const double displaced = m->mass/m->liquid;
@@ -55,9 +62,10 @@ tobi_status tobi_world_body_matter(const tobi_world *w, int body, tobi_body_matt
     if (!w || !m) return TOBI_INVALID;
     if (body < 0 || body >= w->sim.body_count) return TOBI_NOT_FOUND;
     const tobi_body *b = &w->sim.bodies[body];
-    *m = (tobi_body_matter){ .dynamics = b->rigid.kind, .mass = b->info.mass, .volume = b->info.volume };
+    *m = (tobi_body_matter){ .dynamics = b->rigid.kind, .mass = b->info.mass, .volume = b->info.volume,
+                              .liquid = find_liquid(w) };
     memcpy(m->centre, b->rest.centre, sizeof m->centre);
     memcpy(m->inertia, b->info.inertia, sizeof m->inertia);
-    if (b->rigid.kind != TOBI_PRESCRIBED) find_flotation(w, b, m);
+    if (b->rigid.kind != TOBI_PRESCRIBED && !is_joined(w, body)) find_flotation(w, b, m);
     return TOBI_OK;
 }

@@ -58,7 +58,7 @@ static void a_wedge(void **state)
     tobi_mesh_free(&mesh);
 }
 
-/* A body of a world: GM = I/V + KB - KG, and none where there is no liquid. */
+/* A body of a world: GM = I/V + KB - KG; none where there is no liquid, or a joint holds the body. */
 static void a_hull_in_a_world(void **state)
 {
     (void)state;
@@ -67,6 +67,7 @@ static void a_hull_in_a_world(void **state)
         tobi_body_def b = tobi_default_body_def();
         tobi_fluid_def fluid = tobi_default_fluid_def();
         tobi_fill_def fill = tobi_default_fill_def();
+        tobi_joint_def joint = tobi_default_joint_def();
         tobi_body_matter m;
         tobi_world *w;
         for (int a = 0; a < 3; a++) d.domain_max[a] = 4;
@@ -90,6 +91,12 @@ static void a_hull_in_a_world(void **state)
         assert_true(wet || (m.draught == 0 && m.liquid == 0));
         assert_int_equal(tobi_world_body_matter(w, 1, &m), TOBI_NOT_FOUND);
         assert_int_equal(tobi_world_body_matter(w, 0, NULL), TOBI_INVALID);
+        joint.name = "pin";
+        joint.body = "body";
+        joint.axis[1] = 1;
+        OK(tobi_world_add_joint(w, &joint, &err));
+        OK(tobi_world_body_matter(w, 0, &m));
+        assert_true(m.draught == 0 && m.metacentre[0] == 0 && m.liquid == (wet ? 1000 : 0));
         tobi_world_destroy(w);
     }
 }
