@@ -15,7 +15,7 @@ enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_UNWRITTEN = 3, EXIT_INTERRUPTED = 13
 /* The commands. Their options are tables, for argp, the man page and the completion of words alike. */
 extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp, view_argp,
                          report_argp, describe_argp, bench_argp, info_argp, scenes_argp, new_argp,
-                         inspect_argp, surface_argp, picture_argp, sweep_argp;
+                         inspect_argp, surface_argp, foam_argp, picture_argp, sweep_argp;
 int tobiuo_run(int argc, char **argv);
 int tobiuo_resume(int argc, char **argv);
 int tobiuo_plot(int argc, char **argv);
@@ -23,6 +23,7 @@ int tobiuo_movie(int argc, char **argv);
 int tobiuo_inspect(int argc, char **argv);
 int tobiuo_picture(int argc, char **argv);
 int tobiuo_surface(int argc, char **argv);
+int tobiuo_foam(int argc, char **argv);
 int tobiuo_report(int argc, char **argv);
 int tobiuo_view(int argc, char **argv);
 int tobiuo_check(int argc, char **argv);
@@ -181,6 +182,13 @@ int run_gnuplot(const char *folder);
 /* The path of a file in the folder, whatever stood there removed: nothing is written through a link.
    NULL after a complaint; the caller frees. */
 char *clear_place(const char *folder, const char *file);
+
+/* series.c: DIR/NAME; the caller frees, without memory the program ends. */
+char *join_path(const char *dir, const char *name);
+/* Makes a folder for a file of each output, which must be no link. 0, or EXIT_ERROR after a complaint. */
+int make_series_folder(const char *path);
+/* DIR/NAME.pvd, ParaView's list of DIR/NAME/NAME_000000.vtp, from output `first` on. The same codes. */
+int write_series_list(const char *dir, const char *name, const tobi_results *results, int64_t first);
 
 /* surface.c: the name of a format, or NULL; the surfaces of each output, as tobiuo surface makes them, whose
    exit code is returned. */

@@ -27,6 +27,7 @@ static const command commands[] = {
     { "picture", "DIR", "draw a picture of an output of a run", tobiuo_picture, &picture_argp },
     { "surface", "DIR", "make the surfaces of a run, for ParaView, Blender and others", tobiuo_surface,
       &surface_argp },
+    { "foam", "DIR", "make spray, foam and bubbles of a run, for its pictures", tobiuo_foam, &foam_argp },
     { "report", "DIR", "write one page about a run: pictures, tables, what to trust", tobiuo_report,
       &report_argp },
     { "inspect", "SCENE", "write the neighbour search of a particle and the kernels as files", tobiuo_inspect,

@@ -5,12 +5,9 @@
 #include "app.h"
 #include "tobiuo/results.h"
 #include "tobiuo/surface.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 typedef struct surface_options {
     const char *dir, *format, *field;
@@ -282,13 +279,6 @@ static int find_range(const surface_options *o, const tobi_results *results, int
     return 0;
 }
 
-static char *make_path(const char *dir, const char *name)
-{
-    char *path = NULL;
-    if (asprintf(&path, "%s/%s", dir, name) < 0) exit(complain("out of memory"));
-    return path;
-}
-
 typedef struct totals { int64_t files, vertices, triangles; double particles, seconds; } totals;
 
 static void add_totals(totals *t, const input *in, const tobi_surface *s)
@@ -307,7 +297,7 @@ static int write_movie(const surface_options *o, const tobi_results *results, co
     tobi_surface_movie *movie = NULL;
     tobi_error err = { 0 };
     const int64_t last = tobi_results_count(results);
-    char *path = make_path(o->dir, "surface.glb");
+    char *path = join_path(o->dir, "surface.glb");
     int code = o->field ? find_range(o, results, first, in, range) : 0;
     if (code == 0 && tobi_surface_movie_create(path, (int)(last - first), up, &movie, &err) != TOBI_OK)
         code = complain("%s", err.text);
@@ -330,45 +320,15 @@ static int write_movie(const surface_options *o, const tobi_results *results, co
     return code;
 }
 
-/* DIR/surface, which must be no link. */
-static int make_folder(const char *path)
-{
-    struct stat st;
-    if (mkdir(path, 0777) != 0 && errno != EEXIST) return complain("cannot make %s: %s", path,
-                                                                   strerror(errno));
-    if (lstat(path, &st) != 0 || !S_ISDIR(st.st_mode)) return complain("%s is no folder", path);
-    return 0;
-}
-
-/* ParaView's list of the files, those of VTP only. */
-static int write_list(const char *dir, const tobi_results *results, int64_t first)
-{
-    char *path = make_path(dir, "surface.pvd"), *part = make_path(dir, "surface.pvd.part");
-    unlink(part);
-    FILE *file = fopen(part, "wx");
-    if (file)
-        fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n", file);
-    for (int64_t k = first; file && k < tobi_results_count(results); k++)
-        fprintf(file, "<DataSet timestep=\"%.17g\" name=\"surface\" file=\"surface/surface_%06lld.vtp\"/>\n",
-                tobi_results_time(results, k), (long long)k);
-    if (file) fputs("</Collection>\n</VTKFile>\n", file);
-    const int bad = !file || ferror(file);
-    int code = (file && fclose(file) != 0) || bad || rename(part, path) != 0
-        ? complain("cannot write %s: %s", path, strerror(errno)) : 0;
-    free(path);
-    free(part);
-    return code;
-}
-
 static int write_files(const surface_options *o, const tobi_results *results, int64_t first, input *in,
                        totals *t)
 {
-    char *folder = make_path(o->dir, "surface"), name[64];
-    int code = make_folder(folder);
+    char *folder = join_path(o->dir, "surface"), name[64];
+    int code = make_series_folder(folder);
     for (int64_t k = first; code == 0 && k < tobi_results_count(results); k++) {
         tobi_error err = { 0 };
         snprintf(name, sizeof name, "surface_%06lld.%s", (long long)k, o->format);
-        char *path = make_path(folder, name);
+        char *path = join_path(folder, name);
         tobi_surface *s = make_one(o, results, k, in);
         if (!s) code = EXIT_ERROR;
         else if (tobi_surface_write(path, s, &err) != TOBI_OK) code = complain("%s", err.text);
@@ -377,7 +337,8 @@ static int write_files(const surface_options *o, const tobi_results *results, in
         free_input(in);
         free(path);
     }
-    if (code == 0 && strcmp(o->format, "vtp") == 0) code = write_list(o->dir, results, first);
+    if (code == 0 && strcmp(o->format, "vtp") == 0)
+        code = write_series_list(o->dir, "surface", results, first);
     if (code == 0)
         printf("surface: %s, %lld %s", folder, (long long)t->files, t->files == 1 ? "file" : "files");
     free(folder);

@@ -27,13 +27,13 @@ static const struct { const char *folder, *pattern; } ours[] = {
     { "", "*.pvd" },
     { "fluid", "fluid_" SIX "*.vtu" }, { "bodies", "bodies_" SIX "*.vtu" },
     { "grid", "grid_" SIX "*.vtu" }, { "surface", "surface_" SIX "*.vtp" },
-    { "tractions", "*_" SIX "*.vtp" },
+    { "foam", "foam_" SIX "*.vtp" }, { "tractions", "*_" SIX "*.vtp" },
     { "surfaces", "*_" SIX "*.vtp" }, { "surfaces", "*_" SIX "*.stl" },
     { "frames", "*_" SIX "*.png" }, { "ply", "fluid_" SIX "*.ply" }, { "obj", "*_" SIX "*.obj" },
     { "checkpoints", "checkpoint_*.h5" }, { "checkpoints", "checkpoint_*.json" },
 };
-static const char *const folders[] = { "", "fluid", "bodies", "grid", "surface", "surfaces", "tractions",
-                                      "frames", "ply", "obj", "checkpoints" };
+static const char *const folders[] = { "", "fluid", "bodies", "grid", "surface", "surfaces", "foam",
+                                      "tractions", "frames", "ply", "obj", "checkpoints" };
 
 char *tobi_record_path(const char *dir, const char *format, ...)
 {

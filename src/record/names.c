@@ -11,7 +11,7 @@ typedef struct names { tobi_record_name *body, *traction, *line; int bodies, lin
 
 static bool is_taken(const names *n, const char *name)
 {
-    static const char *const ours[] = { "all", "fluid", "bodies", "grid", "surface" };
+    static const char *const ours[] = { "all", "fluid", "bodies", "grid", "surface", "foam" };
     for (size_t k = 0; k < sizeof ours/sizeof *ours; k++)
         if (strcmp(ours[k], name) == 0) return true;
     for (int k = 0; k < n->bodies; k++)
