@@ -103,6 +103,7 @@ typedef struct tobi_fluid_def {
     double density;       /* kg/m3 */
     double viscosity;     /* Pa s, dynamic; Pa s^n with another flow index */
     double yield_stress, flow_index, creep_rate;    /* Pa, 1, 1/s: viscosity.md, eq. (6) */
+    double smagorinsky;   /* 1, the constant of eq. (6) */
     double surface_tension; /* N/m, of its free surface */
     double color[3];      /* RGB, 0 to 255, in pictures; all -1 = by its speed */
     int    visible;       /* 0: left out of pictures */

@@ -10,15 +10,17 @@ enum { TOBI_RESTORED_ROW = 9, TOBI_MEMORY_LIMIT = 64 };
 typedef struct tobi_fluid {
     char name[64];
     double density, viscosity, tension;
-    double yield_stress, flow_index, creep_rate;    /* Pa, 1, 1/s; 0, 1: a Newtonian liquid  */
+    double yield_stress, flow_index, creep_rate;    /* Pa, 1, 1/s */
+    double smagorinsky;             /* constant of turbulence below the spacing              */
     double interface_tension[TOBI_FLUID_LIMIT];      /* N/m, towards each other fluid */
     double color[3];                /* RGB, 0 to 255, or -1; for pictures                    */
     int visible;
 } tobi_fluid;
 
+/* Whether its viscosity is the same everywhere. */
 static inline int tobi_fluid_is_newtonian(const tobi_fluid *f)
 {
-    return f->yield_stress == 0 && f->flow_index == 1;
+    return f->yield_stress == 0 && f->flow_index == 1 && f->smagorinsky == 0;
 }
 
 typedef struct tobi_solid {

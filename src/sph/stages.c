@@ -117,6 +117,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
         v->creep_rate[f] = (float)s->fluid[f].creep_rate;
         v->creep_viscosity[f] = (float)(s->fluid[f].viscosity*pow(s->fluid[f].creep_rate,
                                                                  s->fluid[f].flow_index - 1));
+        v->eddy[f] = (float)(s->fluid[f].density*pow(s->fluid[f].smagorinsky*c->spacing, 2));
     }
     sph_phases_bind(s, v);
     v->band_depth = (float)band_depth(c);

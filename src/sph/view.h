@@ -72,6 +72,7 @@ typedef struct sph_view {
     float dynamic;                            /* Pa s, of the first */
     float yield_stress[TOBI_MAX_FLUIDS], flow_index[TOBI_MAX_FLUIDS];     /* Pa, 1: viscosity.md, eq. (6) */
     float creep_rate[TOBI_MAX_FLUIDS], creep_viscosity[TOBI_MAX_FLUIDS];  /* 1/s; Pa s at it, of K alone */
+    float eddy[TOBI_MAX_FLUIDS];              /* kg/m, of turbulence: Pa s per shear rate */
     int   implicit;                           /* 1: viscosity and friction wait for viscosity.k.h */
     float tension[TOBI_MAX_FLUIDS];           /* N/m     */
     float interface_tension[TOBI_MAX_FLUIDS][TOBI_MAX_FLUIDS];    /* N/m, symmetric, 0 on the diagonal */

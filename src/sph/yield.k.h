@@ -69,7 +69,8 @@ TOBI_FN void sph_apparent(const sph_view *v, int64_t i, double *totals)
     const float xx = x.x - expansion, yy = y.y - expansion, zz = z.z - expansion;
     const float rate = 2*(xx*xx + yy*yy + zz*zz) + xy*xy + yz*yz + zx*zx, faster = sqrtf(rate + creep*creep);
     const lane thinner = lane_exp((v->flow_index[f] - 1)*lane_log1p(lane_set(faster/creep - 1)));
-    const float mu = v->creep_viscosity[f]*lane_at(thinner, 0) + v->yield_stress[f]/faster;
+    const float shear = sqrtf(rate), eddy = v->eddy[f]*shear;
+    const float mu = v->creep_viscosity[f]*lane_at(thinner, 0) + v->yield_stress[f]/faster + eddy;
     (void)totals;
-    v->viscous.apparent[i] = (tobi_float4){mu, sqrtf(rate), 0, 0};
+    v->viscous.apparent[i] = (tobi_float4){mu, shear, 0, 0};
 }

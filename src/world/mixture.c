@@ -27,11 +27,18 @@ tobi_status tobi_mixture_check(const tobi_method *m, const tobi_fluid_def *fluid
 
 const char *tobi_mixture_check_flow(int implicit_viscosity, const tobi_fluid_def *fluid, tobi_error *err)
 {
-    const int yields = fluid->yield_stress > 0;
-    if (implicit_viscosity || (!yields && fluid->flow_index == 1)) return NULL;
-    tobi_fail(err, TOBI_UNSUPPORTED, "is %.10g%s, and implicit_viscosity is false; allowed without it is %s",
-              yields ? fluid->yield_stress : fluid->flow_index, yields ? " Pa" : "", yields ? "0" : "1");
-    return yields ? "yield_stress" : "flow_index";
+    const struct { const char *key, *unit; double given, allowed; } all[] = {
+        { "yield_stress", " Pa", fluid->yield_stress, 0 },
+        { "flow_index", "", fluid->flow_index, 1 },
+        { "smagorinsky", "", fluid->smagorinsky, 0 },
+    };
+    for (size_t k = 0; k < sizeof all/sizeof *all && !implicit_viscosity; k++) {
+        if (all[k].given == all[k].allowed) continue;
+        tobi_fail(err, TOBI_UNSUPPORTED, "is %.10g%s, and implicit_viscosity is false; allowed without it is "
+                  "%g", all[k].given, all[k].unit, all[k].allowed);
+        return all[k].key;
+    }
+    return NULL;
 }
 
 void tobi_rules_fluid(const tobi_rules *r, const tobi_world_def *d, const tobi_fluid_def *fluid,

@@ -24,6 +24,11 @@ static const tobi_param fluid_rows[] = {
       .positive = true, .unit = "1/s",
       .doc = "Shear rate below which the viscosity grows no more: so fast a liquid creeps under 0.7 of its "
              "yield stress." },
+    { .key = "smagorinsky", REAL, AT(tobi_fluid_def, smagorinsky), RANGE(0, 0.3), .unit = "1",
+      .text = "none",
+      .doc = "Smagorinsky constant of turbulence below the spacing, 0.1 to 0.17 in most flows: the viscosity "
+             "grows with the shear rate and the spacing squared. It wants implicit_viscosity; in 2-D it is "
+             "no model of turbulence." },
     { .key = "surface_tension", REAL, AT(tobi_fluid_def, surface_tension), RANGE(0, 1e6), .unit = "N/m",
       .text = "none",
       .doc = "Tension of the free surface; water at 20 degrees C has 0.0728. It wants a support of "

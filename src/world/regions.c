@@ -161,6 +161,7 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     f->yield_stress = def->yield_stress;
     f->flow_index = def->flow_index;
     f->creep_rate = def->creep_rate;
+    f->smagorinsky = def->smagorinsky;
     f->tension = def->surface_tension;
     memcpy(f->color, def->color, sizeof f->color);
     f->visible = def->visible;

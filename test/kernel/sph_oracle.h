@@ -44,7 +44,7 @@ typedef struct oracle {
     int plane_count;
     tobi_plane plane[6];
     const uint8_t *fluid;
-    double yield_stress[2], flow_index[2], creep_rate[2];
+    double yield_stress[2], flow_index[2], creep_rate[2], smagorinsky[2];
     double rho0[2], nu[2], gravity[3], removed_gravity[3];
     double dt, alpha, beta, mean, smooth, filter, surface_limit, speed_cap;
     const float *coarse;

@@ -118,10 +118,12 @@ static void rig_bind_viscosity(rig *g, const double rho[2], const double nu[2])
                                          f->viscous_turning, f->viscous_lack, f->viscous_velocity, 1,
                                          f->apparent};
     for (int k = 0; k < 2; k++) {
-        const double yield = 0.1 + 0.3*k, index = k == 0 ? 0.6 : 1, creep = 2;
+        const double yield = 0.1 + 0.3*k, index = k == 0 ? 0.6 : 1, creep = 2, turbulent = 0.3 - 0.2*k;
         g->view.yield_stress[k] = (float)yield; g->view.flow_index[k] = (float)index;
         g->view.creep_rate[k] = (float)creep;
         g->view.creep_viscosity[k] = (float)(nu[k]*rho[k]*pow(creep, index - 1));
+        g->view.eddy[k] = (float)(rho[k]*pow(turbulent*g->c.spacing, 2));
+        g->o.smagorinsky[k] = turbulent;
         g->o.yield_stress[k] = yield; g->o.flow_index[k] = index; g->o.creep_rate[k] = creep;
     }
 }

@@ -86,8 +86,10 @@ static void oracle_apparent(const oracle *o, const row *in, row *out, double *t)
                 square += 2*strain*strain;
             }
         const double faster = sqrt(square + o->creep_rate[f]*o->creep_rate[f]);
+        const double eddy = o->rho0[f]*pow(o->smagorinsky[f]*o->d, 2)*sqrt(square);
         out[i][SHEAR_RATE] = sqrt(square);
-        out[i][APPARENT] = o->nu[f]*o->rho0[f]*pow(faster, o->flow_index[f] - 1) + o->yield_stress[f]/faster;
+        out[i][APPARENT] = o->nu[f]*o->rho0[f]*pow(faster, o->flow_index[f] - 1) +
+                           o->yield_stress[f]/faster + eddy;
     }
 }
 
