@@ -44,8 +44,9 @@ refuse 'probes[0].position: is 0.6 m in y, the domain reaches from -0.1 to 0.4 m
 printf 'time,speed\n0,1\n1,1\n0.5,1\n' > back.csv
 inlet='"inlets": [ { "name": "in", "centre": [0.5, 0.2], "normal": [0, -1], "width": 0.1, "file": "back.csv" } ]'
 sed "s#\"probes\"#$inlet, \"probes\"#" tank.json > inlet.json
-at="wrong.json:5:15: inlets[0]"
-refuse "$at: flow $PWD/back.csv:4: time 0.5 s does not come after 1 s of the row before" inlet.json '"width": 0.1' '"width": 0.12'
-refuse "$at: inlet 'in' lies inside body 'maker'" inlet.json \
+at="inlets[0]"
+refuse "$at.file: flow $PWD/back.csv:4: time 0.5 s does not come after 1 s of the row before" inlet.json '"width": 0.1' '"width": 0.12'
+refuse "$at.centre: inlet 'in' lies inside body 'maker'" inlet.json \
     '"centre": \[0.5, 0.2\], \(.*\)"file": "back.csv"' '"centre": [-0.05, 0.2], \1"speed": 1'
 echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
