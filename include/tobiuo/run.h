@@ -134,6 +134,8 @@ typedef struct tobi_column {
 /* The columns of a table by index, NULL past the end. In probes.csv, lines.csv and joints.csv the names
    follow that of the probe, line or joint and "_". */
 TOBI_API const tobi_column *tobi_run_column(tobi_table table, int index);
+/* The unit of a column's values in a world of 2 or 3 dimensions: in 2-D "N" is "N per m", "m3" is "m2". */
+TOBI_API const char *tobi_run_unit(const char *unit, int dimension);
 
 #ifdef __cplusplus
 }

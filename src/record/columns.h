@@ -37,10 +37,10 @@
     H("volume_drift", "1", real, i->volume_drift, \
       "Mean error of volume away from a free surface, positive: swollen; of isph, 0 of the others.") \
     H("wall_force_x", "N", real, i->wall_force[0], \
-      "Force of the fluid on the sides of the domain along x; positive pushes towards +x.") \
-    H("wall_force_y", "N", real, i->wall_force[1], "The same along y.") \
-    H("wall_force_z", "N", real, i->wall_force[2], \
-      "The same along z; still water on the floor: negative, the weight.") \
+      "Force of the fluid on the sides of the domain; positive pushes towards +. Still water " \
+      "presses the floor by its weight, downwards.") \
+    H("wall_force_y", "N", real, i->wall_force[1], "") \
+    H("wall_force_z", "N", real, i->wall_force[2], "") \
     H("weight", "N", real, i->weight, "Mass times gravity of all fluid.") \
     H("wall_force_ratio", "1", real, wall_ratio(run, i), \
       "Wall force along gravity over the weight; 1 in a tank at rest without bodies.") \
@@ -64,15 +64,15 @@
     H("fracture_work", "J", real, i->fracture_work, "Lost to new surface, by blades and by cracks.") \
     H("side_work", "J", real, i->side_work, \
       "Lost to friction at sides of the domain; negative where sides drive.") \
-    H("momentum_x", "kg m/s", real, i->momentum[0], "Of all fluid and solids, along x.") \
-    H("momentum_y", "kg m/s", real, i->momentum[1], "The same along y.") \
-    H("momentum_z", "kg m/s", real, i->momentum[2], "The same along z.") \
+    H("momentum_x", "kg m/s", real, i->momentum[0], "Of all fluid and solids.") \
+    H("momentum_y", "kg m/s", real, i->momentum[1], "") \
+    H("momentum_z", "kg m/s", real, i->momentum[2], "") \
     H("force_sum", "N", real, i->force_sum, \
       "Sum over particles of the size of their force: the scale of errors in momentum.") \
     H("speed_max", "m/s", real, i->speed_max, "Speed of the fastest particle.") \
     H("fluid_particles", "1", int, i->fluid_particles, "Particles of fluid and solids.") \
     H("mass_in", "kg", real, i->mass_in, \
-      "Mass that inlets have let into the domain, buffers included, since the start; in 2-D kg/m.") \
+      "Mass that inlets have let into the domain, buffers included, since the start.") \
     H("mass_out", "kg", real, i->mass_out, "Mass that outlets have taken away since the start.") \
     H("mass_held", "kg", real, i->mass_held, \
       "Mass of all fluid and solids: what it was at the start, plus mass_in, less mass_out.") \
@@ -136,7 +136,7 @@
       "Coordinate of the free surface on the plumb line of the point: y or z if gravity is along -y or -z.")
 #define PATCH(P) \
     P("pressure", "Pa", "Mean pressure on the rectangle.") \
-    P("force_x", "N", "Force of the fluid on it; in 2-D per metre of depth.") \
+    P("force_x", "N", "Force of the fluid on it.") \
     P("force_y", "N", "") \
     P("force_z", "N", "") \
     P("moment_x", "N m", "Moment of that force about the middle of the rectangle.") \
@@ -146,9 +146,9 @@
     P("run_up", "m", "Coordinate, along gravity, of the place on the line where the water ends.") \
     P("distance", "m", "How far that place is from the begin of the line; 0 where it is dry.")
 #define FLOW(P) \
-    P("flow", "m3/s", "Volume per second through the rectangle, positive along its normal; in 2-D m2/s.")
+    P("flow", "m3/s", "Volume per second through the rectangle, positive along its normal.")
 #define VOLUME(P) \
-    P("volume", "m3", "Volume of liquid in the box; in 2-D m2.")
+    P("volume", "m3", "Volume of liquid in the box.")
 
 /* V(name, unit, value, meaning): lines.csv after time, for each line; `i` is its info. */
 #define LINE(V) \

@@ -1,6 +1,7 @@
 /* lines.csv: of each line of the scene tension and distance of its ends, as often as the probes are read. */
 #include "record/columns.h"
 #include "record/record.h"
+#include "world/world.h"
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -21,7 +22,8 @@ tobi_status tobi_lines_open(tobi_run *run, bool continued, tobi_error *err)
     for (int k = 0; status == TOBI_OK && k < lines; k++)
         for (int v = 0; v < VALUES; v++, count++) {
             snprintf(names[count], NAME, "%s_%s", tobi_world_line(run->world, k, NULL), values[v].name);
-            columns[count] = (tobi_csv_column){ names[count], values[v].unit };
+            columns[count] = (tobi_csv_column){ names[count],
+                tobi_run_unit(values[v].unit, run->world->sim.def.dimension) };
         }
     const double now = tobi_world_time(run->world);
     if (status == TOBI_OK) columns[0] = (tobi_csv_column){ "time", "s" };

@@ -44,7 +44,8 @@ tobi_status tobi_probes_open(tobi_run *run, bool continued, tobi_error *err)
         const tobi_column *column;
         for (int v = 0; (column = tobi_run_column(table_of(kind), v)); v++, count++) {
             snprintf(names[count], NAME, "%s_%s", name, column->name);
-            columns[count] = (tobi_csv_column){ names[count], column->unit };
+            columns[count] = (tobi_csv_column){ names[count],
+                tobi_run_unit(column->unit, run->world->sim.def.dimension) };
         }
     }
     tobi_status status = columns && names && run->sensor
@@ -192,8 +193,8 @@ json_t *tobi_probes_sum_up(const tobi_run *run)
             char key[160];
             snprintf(key, sizeof key, "%s_%s", name, column->name);
             if (s->noted)
-                json_object_set_new(all, key, json_pack("{s:s, s:o, s:o, s:o, s:o}", "unit", column->unit,
-                                                        "max",
+                json_object_set_new(all, key, json_pack("{s:s, s:o, s:o, s:o, s:o}", "unit",
+                                    tobi_run_unit(column->unit, run->world->sim.def.dimension), "max",
                                     number(s->max), "max_time", number(s->max_time), "min", number(s->min),
                                     "min_time", number(s->min_time)));
         }

@@ -6,6 +6,7 @@
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define DIGITS 9
 
@@ -122,6 +123,16 @@ const tobi_column *tobi_run_column(tobi_table table, int index)
 {
     if (table < 0 || table >= (int)(sizeof tables/sizeof *tables)) return NULL;
     return index >= 0 && index < tables[table].count ? &tables[table].columns[index] : NULL;
+}
+
+const char *tobi_run_unit(const char *unit, int dimension)
+{
+    static const char *const per_depth[][2] = {
+        { "N", "N per m" }, { "N m", "N m per m" }, { "J", "J per m" }, { "kg", "kg per m" },
+        { "kg m/s", "kg m/s per m" }, { "m3", "m2" }, { "m3/s", "m2/s" } };
+    for (size_t k = 0; dimension == 2 && k < sizeof per_depth/sizeof *per_depth; k++)
+        if (strcmp(unit, per_depth[k][0]) == 0) return per_depth[k][1];
+    return unit;
 }
 
 /* history.csv has a row per output. */

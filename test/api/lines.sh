@@ -17,7 +17,7 @@ cat > buoy.json <<'END'
 END
 expect 0 "" run buoy.json --out whole --quiet
 check "a table of tensions and distances" \
-    test "$(head -1 whole/lines.csv)" = "time [s],chain_tension [N],chain_distance [m],spring_tension [N],spring_distance [m]"
+    test "$(head -1 whole/lines.csv)" = "time [s],chain_tension [N per m],chain_distance [m],spring_tension [N per m],spring_distance [m]"
 check "a row for each step, none without a number" \
     test "$(grep -c nan whole/lines.csv) $(($(wc -l < whole/lines.csv) > 20))" = "0 1"
 expect 0 "" run buoy.json --out parts --quiet --until 0.1
