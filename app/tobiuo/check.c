@@ -132,8 +132,10 @@ static void print_scene(const tobi_scene *scene, const tobi_world *world, const 
     const tobi_world_def *d = tobi_scene_world_def(scene);
     printf("scene            %s (%s, %d-D)\n", tobi_scene_name(scene), d->method, d->dimension);
     const double *low = d->domain_min, *high = d->domain_max;
-    printf("domain           %g %g %g  to  %g %g %g m\n", low[0], low[1], low[2], high[0], high[1],
-           high[2]);
+    if (d->dimension == 2) printf("domain           %g %g  to  %g %g m\n", low[0], low[1], high[0], high[1]);
+    else
+        printf("domain           %g %g %g  to  %g %g %g m\n", low[0], low[1], low[2], high[0], high[1],
+               high[2]);
     printf("spacing          %g m\n", d->spacing);
     print_step(d, world, t);
     print_solids(world, d->dimension);

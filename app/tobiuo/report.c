@@ -9,12 +9,13 @@
 #include <string.h>
 #include <unistd.h>
 
-typedef struct report_options { const char *dir, *out; int force; } report_options;
+typedef struct report_options { const char *dir, *out; double from; int force; } report_options;
 
-enum { KEY_FORCE = KEY_OWN };
+enum { KEY_FORCE = KEY_OWN, KEY_FROM };
 
 static const struct argp_option options[] = {
     { "out", 'o', "FILE", 0, "the page (DIR/report.html)", 0 },
+    { "from", KEY_FROM, "S", 0, "means, least and most of the tables begin at this time, s (0)", 0 },
     { "force", KEY_FORCE, NULL, 0, "replace FILE", 0 },
     { 0 }
 };
@@ -27,6 +28,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
         if (!*value) argp_error(state, "--out is empty");
         o->out = value;
         break;
+    case KEY_FROM: o->from = parse_positive(state, "--from", value); break;
     case KEY_FORCE: o->force = 1; break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
@@ -120,7 +122,12 @@ static int read_run(report *r)
     int code = read_one(&r->history, r->dir, "history.csv");
     if (code == 0) code = read_one(&r->bodies, r->dir, "bodies.csv");
     if (code == 0) code = read_one(&r->probes, r->dir, "probes.csv");
+    if (code == 0) code = read_one(&r->lines, r->dir, "lines.csv");
+    if (code == 0) code = read_one(&r->joints, r->dir, "joints.csv");
     if (code != 0) return code;
+    const int time = table_column(&r->history, "time");
+    const double end = r->history.rows ? table_number(&r->history, r->history.rows - 1, time) : 0;
+    if (r->from > 0 && !(r->from < end)) return complain("--from %g: the run ends at %g s", r->from, end);
     r->scene = read_json(r->dir, "resolved.json");
     r->summary = read_json(r->dir, "summary.json");
     r->inputs = read_json(r->dir, "inputs.json");
@@ -137,6 +144,8 @@ static void free_run(report *r)
     table_free(&r->history);
     table_free(&r->bodies);
     table_free(&r->probes);
+    table_free(&r->lines);
+    table_free(&r->joints);
     tobi_world_destroy(r->world);
     tobi_scene_free(r->loaded);
     json_decref(r->scene);
@@ -351,7 +360,7 @@ int tobiuo_report(int argc, char **argv)
 {
     report_options o = { 0 };
     parse_arguments(&report_argp, argc, argv, &o);
-    report r = { .dir = o.dir };
+    report r = { .dir = o.dir, .from = o.from };
     char *out = o.out ? strdup(o.out) : join(o.dir, "report.html");
     int code = out ? read_run(&r) : complain("out of memory");
     if (code == 0 && !o.force && access(out, F_OK) == 0) code = complain("%s exists; --force replaces "

@@ -8,8 +8,8 @@
 /* What a column comes to. */
 typedef struct digest { double last, mean, low, high, low_time, high_time; size_t rows; } digest;
 
-/* The rows of one body; name NULL: all rows. */
-typedef struct part { const table *table; const char *name; } part;
+/* The rows of one body; name NULL: all rows. Extremes and means are of the time from `from` on. */
+typedef struct part { const table *table; const char *name; double from; } part;
 
 static int belongs(const part *p, size_t row)
 {
@@ -28,6 +28,8 @@ static digest digest_column(const part *p, int column)
     for (size_t i = 0; i < p->table->rows; i++) {
         const double t = table_number(p->table, i, time), value = table_number(p->table, i, column);
         if (!belongs(p, i) || isnan(t) || isnan(value)) continue;
+        d.last = value;
+        if (t < p->from) continue;
         if (value < d.low) d.low = value, d.low_time = t;
         if (value > d.high) d.high = value, d.high_time = t;
         if (t > before) {
@@ -35,7 +37,7 @@ static digest digest_column(const part *p, int column)
             span += t - before;
         }
         before = t;
-        d.last = value_before = value;
+        value_before = value;
         d.rows++;
     }
     d.mean = span > 0 ? sum/span : d.last;
@@ -50,14 +52,13 @@ static void write_head(const report *r, const char *title)
           "<th>most<th>at, s<th class=doc>meaning\n", r->file);
 }
 
-static void write_row(const report *r, const char *name, const char *unit, const char *doc, const digest *d)
+static void write_row(const report *r, const tobi_column *c, const char *doc, const digest *d)
 {
+    const char *unit = strcmp(c->unit, "1") == 0 ? "" : tobi_run_unit(c->unit, r->dimension);
     fputs("<tr><td>", r->file);
-    html_text(r->file, name);
-    fprintf(r->file, "<td>%s%s", strcmp(unit, "1") == 0 ? "" : unit,
-            r->dimension == 2 && strchr("NJk", *unit) && *unit ? " per m" : "");
-    fprintf(r->file, "<td>%.5g<td>%.5g<td>%.5g<td>%.4g<td>%.5g<td>%.4g<td "
-        "class=doc>", d->last, d->mean, d->low,
+    html_text(r->file, c->name);
+    fprintf(r->file, "<td>%s<td>%.5g<td>%.5g<td>%.5g<td>%.4g<td>%.5g<td>%.4g<td "
+        "class=doc>", unit, d->last, d->mean, d->low,
             d->low_time, d->high, d->high_time);
     html_text(r->file, doc);
     fputc('\n', r->file);
@@ -68,6 +69,7 @@ static int is_shown(const table *t, const char *name, const digest *d)
 {
     char mean[420];
     snprintf(mean, sizeof mean, "mean_%s", name);
+    if (strcmp(name, "orientation_w") == 0 && d->low == 1) return 0;       /* it does not turn */
     return d->rows > 0 && !(d->low == 0 && d->high == 0) && table_column(t, mean) < 0;
 }
 
@@ -76,9 +78,11 @@ static void write_columns(const report *r, const part *p, tobi_table list, const
                           const char *title)
 {
     const tobi_column *c;
+    const char *doc = "", *said = "";
     char name[400];
     int begun = 0;
     for (int k = 0; (c = tobi_run_column(list, k)); k++) {
+        if (*c->doc) doc = c->doc;              /* once for the components of a vector that are shown */
         snprintf(name, sizeof name, "%s%s", prefix, c->name);
         const int column = table_column(p->table, name);
         if (column < 0 || strcmp(c->unit, "text") == 0) continue;
@@ -86,7 +90,8 @@ static void write_columns(const report *r, const part *p, tobi_table list, const
         const digest d = digest_column(p, column);
         if (!is_shown(p->table, name, &d)) continue;
         if (!begun++) write_head(r, title);
-        write_row(r, c->name, c->unit, c->doc, &d);
+        write_row(r, c, doc == said ? "" : doc, &d);
+        said = doc;
     }
     if (begun) fputs("</table></div>\n", r->file);
 }
@@ -98,7 +103,7 @@ static void write_bodies(const report *r)
     char title[300];
     for (size_t i = 0; name >= 0 && i < t->rows; i++) {
         const char *body = t->cells[i*(size_t)t->columns + (size_t)name];
-        const part p = { t, body };
+        const part p = { t, body, r->from };
         if (i > 0 && strcmp(body, t->cells[(size_t)name]) == 0) break;      /* the second output begins */
         snprintf(title, sizeof title, "Body %s", body);
         write_columns(r, &p, TOBI_TABLE_BODIES, "", title);
@@ -108,7 +113,7 @@ static void write_bodies(const report *r)
 static void write_probes(const report *r)
 {
     static const char *const kinds[] = { "point", "level", "patch", "run-up", "flow", "volume" };
-    const part p = { &r->probes, NULL };
+    const part p = { &r->probes, NULL, r->from };
     const json_t *probes = report_value(r, "probes"), *probe;
     char prefix[200], title[300];
     for (size_t k = 0; (probe = json_array_get(probes, k)); k++) {
@@ -123,13 +128,31 @@ static void write_probes(const report *r)
     }
 }
 
+/* A table for each line, joint, hinge or guide: their names are what stands before a column of their own. */
+static void write_held(const report *r, const table *t, tobi_table list, const char *last, const char *kind)
+{
+    const part p = { t, NULL, r->from };
+    char prefix[400], title[440];
+    const size_t length = strlen(last);
+    for (int k = 0; k < t->columns; k++) {
+        const size_t size = strlen(t->names[k]);
+        if (size <= length || strcmp(t->names[k] + size - length, last) != 0) continue;
+        snprintf(prefix, sizeof prefix, "%.*s_", (int)(size - length), t->names[k]);
+        snprintf(title, sizeof title, "%s %.*s", kind, (int)(size - length), t->names[k]);
+        write_columns(r, &p, list, prefix, title);
+    }
+}
+
 void write_tables(const report *r)
 {
-    const part all = { &r->history, NULL };
+    const part all = { &r->history, NULL, r->from };
     fputs("<h2>Tables</h2>\n<p>Means are over time. Of forces the means over outputs are shown. "
-        "Quantities that "
-          "are 0 throughout are left out.</p>\n", r->file);
+        "Quantities that are 0 throughout are left out.", r->file);
+    if (r->from > 0) fprintf(r->file, " Means, least and most are of the time from %g s on.", r->from);
+    fputs("</p>\n", r->file);
     write_bodies(r);
+    write_held(r, &r->lines, TOBI_TABLE_LINES, "_tension", "Line");
+    write_held(r, &r->joints, TOBI_TABLE_JOINTS, "_gap", "Joint");
     if (r->probes.columns > 0) write_probes(r);
     write_columns(r, &all, TOBI_TABLE_HISTORY, "", "The whole");
 }

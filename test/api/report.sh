@@ -141,6 +141,40 @@ expect 1 "cannot write /proc/page.html" report moved --out /proc/page.html
 echo "when" > moved/history.csv
 expect 1 'has no column "time"' report moved --force
 
+# --- waves in two dimensions ------------------------------------------------------------------------
+cat > barge.json <<'END'
+{ "method": "isph", "dimension": 2, "domain": { "min": [0, 0], "max": [2, 0.6] }, "spacing": 0.04, "end_time": 0.4,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0.2, 0], "max": [1.6, 0.32] } } ] } ],
+  "bodies": [ { "name": "piston", "box": { "min": [0.1, 0], "max": [0.2, 0.6] },
+                "motion": { "piston": { "depth": 0.32, "regular": { "height": 0.04, "period": 1.2 }, "ramp": 1 } } },
+              { "name": "pier", "box": { "min": [1.6, 0], "max": [1.7, 0.6] } },
+              { "name": "step", "box": { "min": [1.4, 0], "max": [1.5, 0.16] } },
+              { "name": "barge", "box": { "min": [0.8, 0.24], "max": [1.12, 0.4] }, "dynamics": "free", "density": 500 } ],
+  "lines": [ { "name": "rope", "body": "barge", "point": [0.8, 0.24], "to": [0.4, 0], "stiffness": 200 } ],
+  "probes": [ { "name": "V", "kind": "volume", "position": [1, 0.16], "length": 0.4, "height": 0.3 },
+              { "name": "W", "kind": "patch", "position": [1.6, 0.16], "normal": [-1, 0], "length": 0.2 } ],
+  "output": { "interval": 0.1 } }
+END
+"$program" run barge.json --out barge --quiet > out.txt 2> err.txt
+PATH=/nonexistent "$program" report barge --from 0.25 > out.txt 2> err.txt
+check "the table of a line" says barge/report.html "<td>tension<td>N per m<td>"
+check "units of sensors" says barge/report.html "<td>volume<td>m2<td>"
+check "as in the tables" grep -q "^time \[s\],V_volume \[m2\],W_pressure \[Pa\],W_force_x \[N per m\]" barge/probes.csv
+check "a piston and a pier are no small bodies" test "$(grep -c 'It closes the whole section' barge/report.html)" = 2
+check "a step stands on the floor" says barge/report.html "2.5 spacings, and it stands on a side of the domain."
+check "only the barge may be wrong" test "$(grep -c 'mark wrong' barge/report.html)" = 1
+check "isph has its waves right" test "$(grep -c '<td>waves<td' barge/report.html)" = 0
+check "the meaning stands with the first component that is shown" \
+    grep -q "<td>wall_force_y<td>N per m<td>.*Force of the fluid on the sides of the domain" barge/report.html
+check "times before --from do not count" $python -c '
+import re
+cells = re.findall(r"<td>(?:position_|tension|volume|kinetic)[^\n]*", open("barge/report.html").read())
+times = [float(re.split("<td[^>]*>", c)[k]) for c in cells for k in (6, 8)]
+raise SystemExit(len(times) < 10 or min(times) < 0.25)'
+expect 1 "--from 4: the run ends at 0.4 s" report barge --from 4 --force
+expect 2 "--from" report barge --from x
+check "check tells two coordinates" grep -qx "domain           0 0  to  2 0.6 m" <("$program" check barge.json)
+
 for tool in chromium gnuplot ffmpeg; do
     command -v $tool > /dev/null && continue
     echo "$passed passed, $failed failed; the rest was skipped: $tool is missing"
