@@ -93,6 +93,13 @@ static void fill_curve(curve *c, const rows *r, const int columns[3], const pane
     }
 }
 
+/* In 2-D most vectors lack a component. */
+static int is_component(const char *column)
+{
+    const size_t length = strlen(column);
+    return length > 2 && column[length - 2] == '_' && strchr("xyz", column[length - 1]);
+}
+
 /* Columns that older runs lack are left out, and panels of what the method does not have. */
 static int add_panel(picture *p, const rows *r, const panel_row *row, int dimension)
 {
@@ -105,6 +112,8 @@ static int add_panel(picture *p, const rows *r, const panel_row *row, int dimens
                                  k->plus ? table_column(r->table, k->plus) : -1,
                                  k->too ? table_column(r->table, k->too) : -1 };
         if (columns[0] < 0 || (k->plus && columns[1] < 0)) continue;
+        if (dimension == 2 && is_component(k->column) && !has_values(r, columns[0]) &&
+            !has_values(r, columns[1])) continue;
         if (k->needs && !has_values(r, table_column(r->table, k->needs))) continue;
         curve *c = add_curve(a, k->label, r->table->rows);
         if (!c) return complain("out of memory");

@@ -80,7 +80,7 @@ const picture_row plot_history[] = {
 
 const picture_row plot_body[] = {
     { "motion", "Motion of", 0, {
-        { "position, m", 0, 0, 0, 0, 0, XYZ("position") },
+        { "shift since the start, m", 0, 0, 0, 1, 0, XYZ("position") },
         { "velocity, m/s", 0, 0, 0, 0, 0, XYZ("velocity") },
         { "angular velocity, rad/s", 0, 0, 0, 0, 0, XYZ("angular_velocity") } } },
     { "force", "Force of the particles on", 0, {

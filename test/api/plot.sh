@@ -123,6 +123,16 @@ check "angles of joints are drawn" has tank/plots/joints_angle.svg "angle, degre
 check "motions of solids are drawn" has tank/plots/jelly_solid_motion.svg "velocity, m/s"
 check "forces on solids are drawn" has tank/plots/jelly_liquid_force.svg "mean force, N"
 rm tank/lines.csv tank/joints.csv tank/solids.csv
+mkdir plane && cat > flat.json <<'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 1] }, "spacing": 0.1, "end_time": 1,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.5] } } ] } ] }
+END
+printf 'time,step,kinetic_energy,wall_force_x,wall_force_y,wall_force_z\n0,0,0,0,0,0\n0.1,1,1,0,-5,0\n' > plane/history.csv
+printf 'time,name,position_x,position_y,position_z,velocity_x,velocity_y,velocity_z\n0,b,2,1,0,0,0,0\n0.1,b,2,3,0,0,4,0\n' \
+    > plane/bodies.csv
+expect 0 "has no values" plot plane --scene flat.json
+check "in 2-D components of 0 are left out" test "$(grep -c '<title>gnuplot_plot' plane/plots/walls.svg)" = 1
+check "motions are shifts" has plane/plots/b_motion.svg "shift since the start, m"
 sed 's/"y_scale": -20}/"y_scale": -20, "label": "later"}/' tank.json > later.json
 expect 0 "" plot tank --scene later.json
 check "references may come later" has "tank/plots/compare_P 1_pressure.svg" "later"
