@@ -47,6 +47,8 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
                             .quiet = o->quiet };
         if (!o->quiet) fprintf(stderr, "tobiuo: %s\n", tobi_run_note(run));
         if (*tobi_run_losses(run)) complain("results in %s: %s", o->dir, tobi_run_losses(run));
+        if (!o->quiet && !(tobi_world_time(world) < d.end))
+            complain("the run has reached its end, %g s; --until S takes it on", d.end);
         code = drive(world, run, &d);
     }
     tobi_run_free(run);
