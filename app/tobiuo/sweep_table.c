@@ -32,15 +32,15 @@ static void add_cell(grid *g, const char *format, ...)
     g->cell[g->used++] = text;
 }
 
-/* The tables probes.csv of all runs; empty where there is none. */
-static table *read_probes(const sweep *s)
+/* A table of all runs; empty where there is none. units: left in the names. */
+static table *read_all(const sweep *s, const char *file, int units)
 {
     table *list = calloc((size_t)s->runs, sizeof *list);
     if (!list) exit(complain("out of memory"));
     for (int run = 0; run < s->runs; run++) {
-        char *name = sweep_name(s, run), *path = sweep_path(s, "%s/probes.csv", name);
+        char *name = sweep_name(s, run), *path = sweep_path(s, "%s/%s", name, file);
         if (access(path, F_OK) == 0) table_read(&list[run], path);
-        table_strip_units(&list[run]);
+        if (!units) table_strip_units(&list[run]);
         free(path);
         free(name);
     }
@@ -53,13 +53,28 @@ static void free_tables(table *list, int count)
     free(list);
 }
 
-static double largest(const table *t, const char *column)
+/* The table has the largest and the least value of such a column. body: of its rows; NULL: of all. */
+typedef struct measure { int file; const char *body, *column; } measure;
+
+enum { FILES = 3, BODIES = FILES - 1, MEASURES = 600 };
+static const char *const files[FILES] = { "probes.csv", "lines.csv", "bodies.csv" };
+
+typedef struct measures { table *of[FILES]; measure one[MEASURES]; int count; } measures;
+
+static int is_of(const table *t, size_t row, const char *body)
 {
-    const int k = t->columns ? table_column(t, column) : -1;
+    const int name = body ? table_column(t, "name") : -1;
+    return !body || (name >= 0 && strcmp(t->cells[row*(size_t)t->columns + (size_t)name], body) == 0);
+}
+
+/* sign 1: the largest; -1: the least. */
+static double extreme(const table *t, const measure *m, double sign)
+{
+    const int k = t->columns ? table_column(t, m->column) : -1;
     double most = NAN;
     for (size_t i = 0; k >= 0 && i < t->rows; i++) {
         const double value = table_number(t, i, k);
-        if (!isnan(value) && !(value < most)) most = value;
+        if (is_of(t, i, m->body) && !isnan(value) && !(sign*value < sign*most)) most = value;
     }
     return most;
 }
@@ -72,7 +87,33 @@ static const table *first_table(const table *list, int count)
     return NULL;
 }
 
-static void add_head(const sweep *s, grid *g, const table *probes)
+static void add_measure(measures *m, int file, const char *body, const char *column)
+{
+    if (m->count < MEASURES) m->one[m->count++] = (measure){ file, body, column };
+}
+
+/* Sensors, lines, and the places of bodies that move. */
+static void find_measures(const sweep *s, measures *m)
+{
+    static const char *const places[] = { "position_x", "position_y", "position_z" };
+    const table *t;
+    for (int f = 0; f < FILES; f++) m->of[f] = read_all(s, files[f], 1);
+    for (int f = 0; f < BODIES; f++)
+        for (int k = 1; (t = first_table(m->of[f], s->runs)) && k < t->columns; k++)
+            add_measure(m, f, NULL, t->names[k]);
+    if (!(t = first_table(m->of[BODIES], s->runs))) return;
+    const int name = table_column(t, "name");
+    for (size_t i = 0; name >= 0 && i < t->rows; i++) {
+        const char *body = t->cells[i*(size_t)t->columns + (size_t)name];
+        if (i > 0 && strcmp(body, t->cells[name]) == 0) return;      /* the second output begins */
+        for (int a = 0; a < 3; a++) {
+            const measure one = { BODIES, body, places[a] };
+            if (extreme(t, &one, 1) > extreme(t, &one, -1)) add_measure(m, BODIES, body, places[a]);
+        }
+    }
+}
+
+static void add_head(const sweep *s, grid *g, const measures *m)
 {
     add_cell(g, "run");
     for (int k = 0; k < s->axis_count; k++) add_cell(g, "%s", s->axes[k].label);
@@ -81,13 +122,13 @@ static void add_head(const sweep *s, grid *g, const table *probes)
         const char *unit = numbers[k].unit;
         add_cell(g, "%s%s%s%s", numbers[k].key, *unit ? " [" : "", unit, *unit ? "]" : "");
     }
-    for (int k = 1; probes && k < probes->columns; k++) {
-        const char *unit = plot_unit(probes->names[k], 3);
-        add_cell(g, "max %s%s%s%s", probes->names[k], *unit ? " [" : "", unit, *unit ? "]" : "");
-    }
+    for (int sign = 1; sign >= -1; sign -= 2)
+        for (const measure *one = m->one; one < m->one + m->count; one++)
+            add_cell(g, "%s %s%s%s%s", sign > 0 ? "max" : "min", one->body ? one->body : "",
+                     one->body ? "_" : "", one->column, one->body ? " [m]" : "");
 }
 
-static void add_row(const sweep *s, grid *g, int run, const table *list, const table *probes)
+static void add_row(const sweep *s, grid *g, int run, const measures *m)
 {
     json_t *summary = sweep_summary(s, run);
     const char *outcome = json_string_value(json_object_get(summary, "outcome"));
@@ -99,11 +140,12 @@ static void add_row(const sweep *s, grid *g, int run, const table *list, const t
         if (json_is_number(value)) add_cell(g, "%.6g", json_number_value(value));
         else add_cell(g, "%s", "");
     }
-    for (int k = 1; probes && k < probes->columns; k++) {
-        const double most = largest(&list[run], probes->names[k]);
-        if (isnan(most)) add_cell(g, "%s", "");
-        else add_cell(g, "%.6g", most);
-    }
+    for (int sign = 1; sign >= -1; sign -= 2)
+        for (const measure *one = m->one; one < m->one + m->count; one++) {
+            const double value = extreme(&m->of[one->file][run], one, sign);
+            if (isnan(value)) add_cell(g, "%s", "");
+            else add_cell(g, "%.6g", value);
+        }
     json_decref(summary);
 }
 
@@ -166,34 +208,33 @@ static void print_short(const sweep *s, const grid *g)
 
 int sweep_write_table(const sweep *s)
 {
-    table *list = read_probes(s);
-    const table *probes = first_table(list, s->runs);
-    const int sensors = probes ? probes->columns - 1 : 0;
-    grid g = { .columns = s->axis_count + 2 + NUMBERS + sensors, .rows = s->runs + 1 };
+    measures m = { 0 };
+    find_measures(s, &m);
+    grid g = { .columns = s->axis_count + 2 + NUMBERS + 2*m.count, .rows = s->runs + 1 };
     g.cell = calloc((size_t)g.columns*(size_t)g.rows + 1, sizeof *g.cell);
     if (!g.cell) exit(complain("out of memory"));
-    add_head(s, &g, probes);
-    for (int run = 0; run < s->runs; run++) add_row(s, &g, run, list, probes);
+    add_head(s, &g, &m);
+    for (int run = 0; run < s->runs; run++) add_row(s, &g, run, &m);
     int code = write_grid(s, &g, "sweep.csv", 0);
     if (!code) code = write_grid(s, &g, "sweep.txt", 1);
     if (!code) print_short(s, &g);
     if (!code) printf("%s/sweep.csv and sweep.txt have all columns\n", s->dir);
     for (int k = 0; k < g.columns*g.rows; k++) free(g.cell[k]);
     free(g.cell);
-    free_tables(list, s->runs);
+    for (int f = 0; f < FILES; f++) free_tables(m.of[f], s->runs);
     return code;
 }
 
 /* --- the plot ------------------------------------------------------------------------------ */
 
-/* The column of a run, from probes.csv or else history.csv, as a curve; 0 if it has none. */
+/* The column of a run, from probes.csv, lines.csv or else history.csv, as a curve; 0 if it has none. */
 static int add_run(const sweep *s, int run, const char *column, panel *a, picture *p, char **name)
 {
-    static const char *const files[] = { "probes.csv", "history.csv" };
+    static const char *const from[] = { "probes.csv", "lines.csv", "history.csv" };
     table t = { 0 };
     int k = -1;
-    for (int f = 0; f < 2 && k < 0; f++) {
-        char *path = sweep_path(s, "%s/%s", *name, files[f]);
+    for (int f = 0; f < 3 && k < 0; f++) {
+        char *path = sweep_path(s, "%s/%s", *name, from[f]);
         table_free(&t);
         if (access(path, F_OK) != 0 || table_read(&t, path) != 0) table_free(&t);
         table_strip_units(&t);
@@ -217,24 +258,24 @@ static int add_run(const sweep *s, int run, const char *column, panel *a, pictur
     return time >= 0;
 }
 
-/* What is drawn without --plot: the first sensors; kinetic energy and speed where there are none. */
+/* What is drawn without --plot, with its unit: the first sensors; without any, kinetic energy and speed. */
 static int choose_columns(const sweep *s, const char *column[PANEL_LIMIT], table **keep)
 {
     int count = 0;
-    *keep = read_probes(s);
+    *keep = read_all(s, "probes.csv", 1);
     if (s->plot) return column[0] = s->plot, 1;
     const table *probes = first_table(*keep, s->runs);
     for (int k = 1; probes && k < probes->columns && count < PANEL_LIMIT; k++)
         if (!strstr(probes->names[k], "_velocity_")) column[count++] = probes->names[k];
     if (count) return count;
-    column[0] = "kinetic_energy";
-    column[1] = "speed_max";
+    column[0] = "kinetic_energy [J]";
+    column[1] = "speed_max [m/s]";
     return 2;
 }
 
 static int complain_column(const sweep *s)
 {
-    complain("no run has a column \"%s\" in probes.csv or history.csv; nothing is drawn", s->plot);
+    complain("no run has a column \"%s\" in probes.csv, lines.csv or history.csv; nothing is drawn", s->plot);
     return EXIT_ERROR;
 }
 
@@ -251,9 +292,12 @@ int sweep_draw(const sweep *s)
     for (int run = 0; run < s->runs; run++) names[run] = sweep_name(s, run);
     for (int k = 0; k < columns; k++) {
         panel *a = &p.panel[p.panels];
-        const char *unit = plot_unit(column[k], 3);
-        snprintf(a->y_label, sizeof a->y_label, "%s%s%s", column[k], *unit ? ", " : "", unit);
-        for (int run = 0; run < s->runs; run++) drawn += add_run(s, run, column[k], a, &p, &names[run]);
+        const char *unit = strstr(column[k], " [");
+        char *own = strndup(column[k], unit ? (size_t)(unit - column[k]) : strlen(column[k]));
+        if (!own) exit(complain("out of memory"));
+        snprintf(a->y_label, sizeof a->y_label, "%s", column[k]);
+        for (int run = 0; run < s->runs; run++) drawn += add_run(s, run, own, a, &p, &names[run]);
+        free(own);
         p.panels += a->curves > 0;
     }
     if (!drawn && s->plot) code = complain_column(s);
@@ -265,7 +309,8 @@ int sweep_draw(const sweep *s)
         picture_write(out, &p, "sweep.svg");
         fclose(out);
         code = run_gnuplot(s->dir);
-        if (!code) printf("%s/sweep.svg shows %s of all runs\n", s->dir, column[0]);
+        if (!code) printf("%s/sweep.svg shows %.*s of all runs\n", s->dir,
+                          (int)strcspn(column[0], " "), column[0]);
     }
     for (int run = 0; run < s->runs; run++) free(names[run]);
     picture_free(&p);

@@ -41,5 +41,20 @@ expect 0 "" describe lines
 check "describe names the columns" grep -q "^  distance " out.txt
 check "and the table" grep -q "The columns of lines.csv for each line" out.txt
 
+expect 0 "" sweep buoy.json --set lines.spring.stiffness=100,200 --until 0.1 --out s
+head=$(head -1 s/sweep.csv)
+for column in "max chain_tension [N per m]" "min spring_distance [m]" "max buoy_position_y [m]" "min buoy_position_y [m]"; do
+    check "a sweep has $column" grep -qF ",$column" <(echo "$head")
+done
+check "with the values of the tables" $python -c '
+import csv
+row = list(csv.DictReader(open("s/sweep.csv")))[0]
+run = list(csv.DictReader(open("s/stiffness=100/lines.csv")))
+heave = [float(r["position_y"]) for r in csv.DictReader(open("s/stiffness=100/bodies.csv")) if r["name"] == "buoy"]
+most = max(float(r["chain_tension [N per m]"]) for r in run)
+near = lambda text, value: abs(float(text) - value) <= 1e-5*abs(value)
+raise SystemExit(not (near(row["max chain_tension [N per m]"], most) and near(row["min buoy_position_y [m]"], min(heave))))'
+expect 0 "the run has reached its end, 0.1 s; --until S takes it on" resume s/stiffness=100
+
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]
