@@ -141,6 +141,17 @@ tobi_status tobi_world_note_clamps(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+/* By default liquids slip along bodies: a stirrer in a paste would then feel next to no torque. */
+static tobi_status note_slip(tobi_world *w, tobi_error *err)
+{
+    static const char text[] = "the liquid slips along it, with implicit_viscosity; for a liquid that sticks "
+                               "to it: \"friction\": \"no-slip\"\n";
+    for (int k = 0; w->sim.def.implicit_viscosity && k < w->sim.body_count; k++)
+        if (w->sim.bodies[k].friction == TOBI_SLIP)
+            TOBI_TRY(tobi_world_add_notes(w, "body", w->sim.bodies[k].name, text, err));
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_note_liquids(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = tobi_world_solids(w);
@@ -150,7 +161,7 @@ tobi_status tobi_world_note_liquids(tobi_world *w, tobi_error *err)
     for (int k = 0; s && k < s->solid_count; k++)
         if (s->solids[k].def.model == TOBI_LIQUID)
             TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[k].name, text, err));
-    return TOBI_OK;
+    return note_slip(w, err);
 }
 
 /* How far a body reaches into the domain from a side, m. */

@@ -148,6 +148,22 @@ static void still_oil_stays_still(void **state)
     }
 }
 
+/* A stirrer that slips feels next to no torque. */
+static void a_body_that_slips_is_told(void **state)
+{
+    (void)state;
+    for (int slips = 0; slips < 2; slips++) {
+        const char *disc = slips ? "{\"name\": \"disc\", \"sphere\": {\"centre\": [0, 0], \"radius\": 0.05}}"
+                                 : DISC("disc", "0.1", "\"velocity\": [0, 0]");
+        tobi_world *w = make_patch("dfsph", disc, "", 0.004, 1);
+        int told = 0;
+        for (int n = 0; tobi_world_note(w, n); n++)
+            told += strstr(tobi_world_note(w, n), "'disc': the liquid slips along it") != NULL;
+        assert_int_equal(told, slips);
+        tobi_world_destroy(w);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -155,6 +171,7 @@ int main(void)
         cmocka_unit_test(the_step_does_not_count),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(still_oil_stays_still),
+        cmocka_unit_test(a_body_that_slips_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
