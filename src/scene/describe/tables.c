@@ -23,6 +23,8 @@ static const char head[] =
     "`mean_viscous_force_x`, `_y`, `_z` |\n"
     "| where a body is, how it is turned | `bodies.csv` | `position_x`, `_y`, `_z`; `orientation_w`, "
     "`_x`, `_y`, `_z` |\n"
+    "| torque of a stirrer, a propeller | `bodies.csv` | `mean_pressure_torque_z` + "
+    "`mean_viscous_torque_z`; less its product with `angular_velocity_z` is the power of the motor |\n"
     "| force on a knife's edge | `bodies.csv` | `mean_edge_force_x`, `_y`, `_z` |\n"
     "| force of the liquids on a soft solid | `solids.csv` | `mean_liquid_force_x`, `_y`, `_z` |\n"
     "| pressure, level, flow at a sensor | `probes.csv` | `NAME_pressure`, `NAME_level`, `NAME_flow` |\n"
