@@ -96,10 +96,30 @@ static int find_view(source *s, const char *dir, const char *name)
     return s->view ? 0 : complain("the scene of %s has no view '%s'", dir, name);
 }
 
+/* Of a view, output.picture and output.camera are its own. */
+static overrides sets_of_view(const overrides *set, const char *view)
+{
+    static const char *const keys[] = { "output.picture", "output.camera" };
+    overrides own = { 0 };
+    for (int k = 0; k < set->count; k++) {
+        const char *text = set->text[k];
+        int is_own = 0;
+        for (int n = 0; view && n < 2; n++) {
+            const size_t length = strlen(keys[n]);
+            is_own |= strncmp(text, keys[n], length) == 0 && text[length] && strchr(".=", text[length]);
+        }
+        if (is_own) overrides_add(&own, "output.views.%s.%s", view, text + strlen("output."));
+        else overrides_add(&own, "%s", text);
+    }
+    return own;
+}
+
 static int open_source(source *s, const char *dir, const char *view, const overrides *set)
 {
     tobi_error err = { 0 };
-    int code = load_looks(dir, set, &s->scene, &s->looks);
+    overrides own = sets_of_view(set, view);
+    int code = load_looks(dir, &own, &s->scene, &s->looks);
+    overrides_free(&own);
     if (code == 0) code = find_view(s, dir, view);
     if (code == 0 && tobi_results_open(dir, &s->results, &err) != TOBI_OK) code = complain("%s", err.text);
     return code;
@@ -185,7 +205,8 @@ int draw_missing(const char *dir, const char *view, const overrides *set, const 
 
 const struct argp picture_argp = { .options = options, .parser = parse, .args_doc = "DIR",
     .doc = "Draw a picture of an output of the run in DIR: water as it looks or the colours of a field, with "
-           "arrows, axes, a clip plane. Everything under output.picture and output.camera can be set." };
+           "arrows, axes, a clip plane. Everything under output.picture and output.camera can be set, of a "
+           "view too." };
 
 int tobiuo_picture(int argc, char **argv)
 {

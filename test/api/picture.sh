@@ -86,6 +86,11 @@ check "a picture of each view at each output" test -s views/frames/top_000002.pn
 check "the output's own are the same" cmp -s views/frames/frame_000001.png dam/frames/frame_000001.png
 expect 0 "" picture views --view top
 expect 0 "" picture views --view all --output 1
+expect 0 "" picture views --view top --set output.views.top.picture.axes=true --out axes_of_top.png
+expect 0 "" picture views --view top --set output.picture.axes=true --out axes.png
+check "a --set of the picture is of the view" cmp -s axes.png axes_of_top.png
+expect 0 "" picture views --view top --out top.png
+check "and changes it" test "$(cmp -s top.png axes.png; echo $?)" = 1
 expect 0 "scatters by" run dam.json --out views --quiet --force
 check "pictures of an earlier run are gone" test ! -e views/frames/top_000000.png
 expect 1 "the scene of dam has no view 'top'" picture dam --view top
