@@ -258,19 +258,34 @@ static int add_run(const sweep *s, int run, const char *column, panel *a, pictur
     return time >= 0;
 }
 
-/* What is drawn without --plot, with its unit: the first sensors; without any, kinetic energy and speed. */
+/* What is drawn without --plot: the first sensors; kinetic energy and speed where there are none. */
 static int choose_columns(const sweep *s, const char *column[PANEL_LIMIT], table **keep)
 {
     int count = 0;
-    *keep = read_all(s, "probes.csv", 1);
+    *keep = read_all(s, "probes.csv", 0);
     if (s->plot) return column[0] = s->plot, 1;
     const table *probes = first_table(*keep, s->runs);
     for (int k = 1; probes && k < probes->columns && count < PANEL_LIMIT; k++)
         if (!strstr(probes->names[k], "_velocity_")) column[count++] = probes->names[k];
     if (count) return count;
-    column[0] = "kinetic_energy [J]";
-    column[1] = "speed_max [m/s]";
+    column[0] = "kinetic_energy";
+    column[1] = "speed_max";
     return 2;
+}
+
+/* That of the first run that has begun. */
+static int find_dimension(const sweep *s)
+{
+    json_t *scene = NULL;
+    for (int run = 0; run < s->runs && !scene; run++) {
+        char *name = sweep_name(s, run), *path = sweep_path(s, "%s/resolved.json", name);
+        scene = json_load_file(path, 0, NULL);
+        free(path);
+        free(name);
+    }
+    const int dimension = json_integer_value(json_object_get(scene, "dimension")) == 2 ? 2 : 3;
+    json_decref(scene);
+    return dimension;
 }
 
 static int complain_column(const sweep *s)
@@ -287,17 +302,15 @@ int sweep_draw(const sweep *s)
     const int columns = choose_columns(s, column, &keep);
     char **names = calloc((size_t)s->runs, sizeof *names), *script = NULL;
     if (!names) exit(complain("out of memory"));
+    const int dimension = find_dimension(s);
     int drawn = 0, code = 0;
     snprintf(p.title, sizeof p.title, "%s", s->dir);
     for (int run = 0; run < s->runs; run++) names[run] = sweep_name(s, run);
     for (int k = 0; k < columns; k++) {
         panel *a = &p.panel[p.panels];
-        const char *unit = strstr(column[k], " [");
-        char *own = strndup(column[k], unit ? (size_t)(unit - column[k]) : strlen(column[k]));
-        if (!own) exit(complain("out of memory"));
-        snprintf(a->y_label, sizeof a->y_label, "%s", column[k]);
-        for (int run = 0; run < s->runs; run++) drawn += add_run(s, run, own, a, &p, &names[run]);
-        free(own);
+        const char *unit = plot_unit(column[k], dimension);
+        snprintf(a->y_label, sizeof a->y_label, "%s%s%s", column[k], *unit ? ", " : "", unit);
+        for (int run = 0; run < s->runs; run++) drawn += add_run(s, run, column[k], a, &p, &names[run]);
         p.panels += a->curves > 0;
     }
     if (!drawn && s->plot) code = complain_column(s);
@@ -309,8 +322,7 @@ int sweep_draw(const sweep *s)
         picture_write(out, &p, "sweep.svg");
         fclose(out);
         code = run_gnuplot(s->dir);
-        if (!code) printf("%s/sweep.svg shows %.*s of all runs\n", s->dir,
-                          (int)strcspn(column[0], " "), column[0]);
+        if (!code) printf("%s/sweep.svg shows %s of all runs\n", s->dir, column[0]);
     }
     for (int run = 0; run < s->runs; run++) free(names[run]);
     picture_free(&p);

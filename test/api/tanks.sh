@@ -123,6 +123,8 @@ check "the table of what there is" test "$(grep -c 'not run' s/sweep.csv)" = 3
 if command -v gnuplot > /dev/null; then
     expect 0 "" "${sweep[@]}" --jobs 2 --plot wall_pressure
     check "a plot of all" grep -q "spacing=0.025_method=wcsph" s/sweep.svg
+    "$program" "${sweep[@]}" --plot weight > out.txt 2> err.txt
+    check "units of 2-D" grep -q "weight, N per m" s/sweep.svg
     expect 1 'no run has a column "nothing"' "${sweep[@]}" --plot nothing
 else
     "$program" "${sweep[@]}" --jobs 2 > out.txt 2> err.txt
