@@ -2,6 +2,7 @@
    between plates and channels have exact solutions. */
 #include "calls.h"
 #include "scene_text.h"
+#include "sph/sensor/tractions.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -58,10 +59,22 @@ static void set_off(tobi_world *w, profile speed, const void *user)
 
 static double find_linear(const void *user, double y) { return *(const double *)user*y; }
 
+/* Pa, in the middle of the floor. */
+static double find_traction(const tobi_world *w)
+{
+    const int up = w->sim.def.dimension - 1;
+    sph_place place = { .x = { 4*D, 4*D } };
+    double pressure, shear[3];
+    place.x[up] = 5*D;
+    place.normal[up] = 1;
+    sph_surface_look(&w->system[0], &w->sim.bodies[0], &place, &pressure, shear);
+    return shear[0];
+}
+
 /* Sheared from the start as theory has it: the force on the floor, a body, N/m2, and the viscosity of a
    particle in the middle. */
 static double shear(const char *method, int dimension, double lid, double mu, const char *more,
-                    double *apparent)
+                    double *apparent, double *traction)
 {
     enum { LAYERS = 6 };
     const double rate = lid/(LAYERS*D);
@@ -77,6 +90,7 @@ static double shear(const char *method, int dimension, double lid, double mu, co
         OK(tobi_world_read(w, TOBI_FLUID, "apparent_viscosity", viscosity, count, &err));
         *apparent = viscosity[count/2];
     }
+    *traction = find_traction(w);
     tobi_world_destroy(w);
     return floor.viscous_force[0]/(dimension == 2 ? 8*D : 64*D*D);
 }
@@ -89,11 +103,15 @@ static void plates_bear_the_stress(void **state)
     (void)state;
     for (int m = 0; m < 4; m++)
         for (int dimension = 2; dimension <= 3; dimension++) {
-            double apparent, plain;
-            const double with = shear(methods[m], dimension, lid, mu, ", \"smagorinsky\": 0.3", &apparent);
-            const double without = shear(methods[m], dimension, lid, all, "", &plain);
-            print_message("%s, %d-D: viscosity %.5f, stress %.4f of theory, %.5f of a thicker liquid's\n",
-                          methods[m], dimension, apparent/all, with/(all*rate), with/without);
+            double apparent, plain, local, even;
+            const double with = shear(methods[m], dimension, lid, mu, ", \"smagorinsky\": 0.3", &apparent,
+                                      &local);
+            const double without = shear(methods[m], dimension, lid, all, "", &plain, &even);
+            print_message("%s, %d-D: viscosity %.5f, stress %.4f, in the middle %.4f of theory, %.5f and "
+                          "%.5f of a thicker liquid's\n", methods[m], dimension, apparent/all,
+                          with/(all*rate), local/(all*rate), with/without, local/even);
+            assert_float_equal(local/even, 1, 1e-3);
+            assert_float_equal(local/(all*rate), 1, 0.06);
             assert_float_equal(apparent/all, 1, 2e-4);
             assert_float_equal(with/without, 1, 1e-3);
             assert_float_equal(with/(all*rate), 1, tolerance[m]);

@@ -43,19 +43,23 @@ static void carry(look *l, int64_t i, const double r[3], double w, double depth)
     l->away += w*(rho/l->s->fluid[0].density)*depth;
 }
 
-/* The reaction of the drag that the particle feels from here, along the surface. */
+/* The reaction of the drag that the particle feels from here, along the surface. Implicit viscosity knows no
+   turbulent layer, viscosity.md eq. (3). */
 static void rub(look *l, int64_t i, double w, double depth)
 {
     const double *n = l->place->normal, least = 0.25*l->s->smoothing.spacing, away = fmax(depth, least);
     const tobi_fluid *f = &l->s->fluid[l->s->particles.fluid[i]];
+    const tobi_float4 *apparent = sph_fields_of(&l->s->particles)->apparent;
     const tobi_float4 *v = &l->s->particles.velocity[i];
+    const double mu = apparent ? apparent[i].x : f->viscosity;
     const double *b = l->place->velocity;
     double u[3] = { v->x - b[0], v->y - b[1], v->z - b[2] };
     const double through = vec3_dot(u, n);
     for (int a = 0; a < 3; a++) u[a] -= through*n[a];
-    const double speed = vec3_length(u), nu = f->viscosity/f->density;
+    const double speed = vec3_length(u), nu = mu/f->density;
     if (!(speed > 0) || !(nu > 0)) return;
-    const double rate = 2*w*f->viscosity/away*tobi_wall_law((float)(speed*away/nu));
+    const double layer = l->s->sim->def.implicit_viscosity ? 1 : tobi_wall_law((float)(speed*away/nu));
+    const double rate = 2*w*mu/away*layer;
     for (int a = 0; a < 3; a++) l->shear[a] += rate*u[a];
 }
 
