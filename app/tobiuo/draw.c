@@ -133,6 +133,8 @@ static int draw_output(source *s, const char *dir, int64_t output)
     s->drawing = NULL;
     tobi_moment_free(&s->moment);
     tobi_status status = tobi_results_read(s->results, output, &s->moment, &err);
+    if (status == TOBI_OK && s->view->foam)
+        status = tobi_results_read_foam(s->results, output, &s->moment, &err);
     if (status == TOBI_OK && s->view->paths) status = tobi_tracks_read(dir, &s->moment, &err);
     if (status == TOBI_OK) status = tobi_drawing_make(&s->looks, &s->moment, s->view, &s->drawing, &err);
     return status == TOBI_OK ? 0 : complain("%s", err.text);

@@ -378,6 +378,15 @@ static int redraw_and_make(const movie_options *o, const char *out)
     return code;
 }
 
+/* Which the pictures of the run do not show. */
+static int has_foam(const char *dir)
+{
+    char *path = join_path(dir, "foam.pvd");
+    const int there = access(path, F_OK) == 0;
+    free(path);
+    return there;
+}
+
 /* Before anything is drawn for it. */
 static int check_speed(const movie_options *o)
 {
@@ -391,7 +400,7 @@ static int check_speed(const movie_options *o)
 
 const struct argp movie_argp = { .options = options, .parser = parse, .args_doc = "DIR",
     .doc = "Make a movie of the run in DIR, with ffmpeg, or a sheet of a dozen pictures. Pictures that the "
-           "run did not draw are drawn now, from its results." };
+           "run did not draw are drawn now, from its results; all of them where there is foam." };
 
 int tobiuo_movie(int argc, char **argv)
 {
@@ -405,7 +414,8 @@ int tobiuo_movie(int argc, char **argv)
     if (code == 0 && !is_png(out)) code = check_speed(&o);
     if (code == 0) code = prepare_movie(out, o.force);
     if (code == 0 && !is_png(out)) code = check_encoder();
-    if (code == 0) code = o.set.count ? redraw_and_make(&o, out) : complete_and_make(&o, out);
+    if (code == 0) code = o.set.count || has_foam(o.dir) ? redraw_and_make(&o, out)
+        : complete_and_make(&o, out);
     overrides_free(&o.set);
     free(own);
     return code;

@@ -111,6 +111,10 @@ typedef struct tobi_picture {
     const tobi_picture_mesh *meshes;
     int mesh_count;
 
+    int64_t foam_count;                /* spray, foam and bubbles: white points                         */
+    const double (*foam)[3];           /* m; not finite = not drawn                                     */
+    const uint8_t *foam_kind;          /* TOBI_SPRAY, TOBI_FOAM, TOBI_BUBBLE of tobiuo/foam.h           */
+
     float background_top[3], background_bottom[3];   /* sRGB */
     const char *title;                 /* ASCII, upper left, "t = 0.25 s"; NULL = none                  */
     const char *label;                 /* ASCII, of the colour bar, "speed [m/s]"; NULL = no bar        */

@@ -43,6 +43,9 @@ typedef struct tobi_moment {
     tobi_moment_surface *surfaces;
     int     track_count;               /* 0 until tobi_tracks_read                                */
     tobi_moment_track *tracks;
+    int64_t foam_count;                /* 0 until tobi_results_read_foam                          */
+    double (*foam)[3];                 /* m                                                       */
+    uint8_t *foam_kind;                /* TOBI_SPRAY, TOBI_FOAM, TOBI_BUBBLE of tobiuo/foam.h      */
 } tobi_moment;
 
 /* Opens the results in dir. TOBI_NOT_FOUND: there is no run; TOBI_DAMAGED: its list is no list. */
@@ -56,6 +59,9 @@ TOBI_API double tobi_results_time(const tobi_results *results, int64_t output);
    TOBI_DAMAGED: a file that this library did not write, or a part of one. On failure *moment is empty. */
 TOBI_API tobi_status tobi_results_read(const tobi_results *results, int64_t output, tobi_moment *moment,
                                        tobi_error *err);
+/* Fills the foam of a moment from DIR/foam, which tobi_foam_write wrote; none without that file. */
+TOBI_API tobi_status tobi_results_read_foam(const tobi_results *results, int64_t output, tobi_moment *moment,
+                                            tobi_error *err);
 /* Fills the tracks of a moment from bodies.csv of the run in dir, up to its time; none without that file. */
 TOBI_API tobi_status tobi_tracks_read(const char *dir, tobi_moment *moment, tobi_error *err);
 /* Adds a point to the track of a body, which is made if there is none. */

@@ -362,6 +362,7 @@ typedef struct tobi_view_def {
     int         paths;                /* 1: where the centres of bodies have been                     */
     int         axes;                 /* 1: ticks along edges of the domain                           */
     int         transparent;          /* 1: nothing behind                                            */
+    int         foam;                 /* 1: spray, foam and bubbles, where tobi_foam_write wrote them   */
     const char *follow;               /* name of the body that the camera moves with; NULL = none     */
     double      clip_point[3], clip_normal[3];       /* m, 1; a normal of 0 = no plane                */
     double      slice;                /* m; 0 = all on one side of the plane                          */

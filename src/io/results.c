@@ -159,6 +159,8 @@ void tobi_moment_free(tobi_moment *m)
     free(m->fields);
     free(m->surfaces);
     free(m->tracks);
+    free(m->foam);
+    free(m->foam_kind);
     *m = (tobi_moment){ 0 };
 }
 
@@ -208,5 +210,42 @@ tobi_status tobi_results_read(const tobi_results *results, int64_t output, tobi_
     for (size_t k = begin; status == TOBI_OK && k < end; k++)
         status = read_entry(results, &results->entries[k], moment, err);
     if (status != TOBI_OK) tobi_moment_free(moment);
+    return status;
+}
+
+/* Places and kinds of diffuse particles that stand in an output of their own. */
+static tobi_status take_foam(const char *path, tobi_moment *from, tobi_moment *m, tobi_error *err)
+{
+    const tobi_moment_field *kind = NULL;
+    for (int k = 0; k < from->field_count; k++)
+        if (strcmp(from->fields[k].name, "kind") == 0) kind = &from->fields[k];
+    if (!kind || kind->components != 1)
+        return tobi_fail(err, TOBI_DAMAGED, "results %s: is no file of foam", path);
+    m->foam_kind = malloc((size_t)from->count + 1);
+    if (!m->foam_kind) return tobi_fail(err, TOBI_NO_MEMORY, "results %s: out of memory", path);
+    for (int64_t i = 0; i < from->count; i++) m->foam_kind[i] = (uint8_t)kind->values[i];
+    m->foam = from->positions;
+    m->foam_count = from->count;
+    from->positions = NULL;
+    return TOBI_OK;
+}
+
+tobi_status tobi_results_read_foam(const tobi_results *results, int64_t output, tobi_moment *m,
+                                   tobi_error *err)
+{
+    TOBI_NEED(results, "the results");
+    TOBI_NEED(m, "the moment");
+    char *path = NULL;
+    tobi_moment own = { 0 };
+    free(m->foam);
+    free(m->foam_kind);
+    m->foam = NULL, m->foam_kind = NULL, m->foam_count = 0;
+    if (asprintf(&path, "%s/foam/foam_%06lld.vtp", results->dir, (long long)output) < 0)
+        return tobi_fail(err, TOBI_NO_MEMORY, "results %s: out of memory", results->dir);
+    tobi_status status = tobi_vtu_read(path, &own, err);
+    if (status == TOBI_OK) status = take_foam(path, &own, m, err);
+    else if (status == TOBI_NOT_FOUND) status = TOBI_OK;
+    tobi_moment_free(&own);
+    free(path);
     return status;
 }

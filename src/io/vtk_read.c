@@ -89,7 +89,8 @@ static tobi_status open_reader(reader *r, const char *path, tobi_error *err)
 /* The next DataArray behind *at; 0 past the last. A section's name is that of the last tag that opens one. */
 static int next_element(const reader *r, const char **at, element *e)
 {
-    static const char *const sections[] = { "<PointData", "<CellData", "<Points>", "<Cells>", "<Polys>" };
+    static const char *const sections[] = { "<PointData", "<CellData", "<Points>", "<Cells>", "<Verts>",
+                                            "<Polys>" };
     static const char *const types[] = { "Float32", "Float64", "Int32", "Int64", "UInt8" };
     char value[NAME];
     const char *tag = strstr(*at, "<DataArray ");

@@ -216,6 +216,9 @@ tobi_status view_paint_glass(canvas *c, const geometry *g, const geometry *water
 typedef struct segments { vec (*end)[2]; int64_t count, room; } segments;
 /* Closed lines, around what is seen through and around what hides the liquid behind it. */
 enum { COVER_CLEAR, COVER_OPAQUE, COVERS };
+/* foam_points.c: over the finished water. */
+tobi_status view_draw_foam(canvas *c, const tobi_picture *f, tobi_error *err);
+
 /* isolines.c; false: no memory. In 2-D, of a group, at f->isolines values between low and high. */
 typedef struct surface_request surface_request;
 bool view_add_segment(segments *s, vec from, vec to);

@@ -366,6 +366,11 @@ static void set_picture(tobi_drawing *d)
         p->skin = d->skin, p->rest = (const double (*)[3])d->rest;
     }
     p->threads = s->threads;
+    if (d->view->foam) {
+        p->foam_count = d->moment->foam_count;
+        p->foam = (const double (*)[3])d->moment->foam;
+        p->foam_kind = d->moment->foam_kind;
+    }
     /* Water in 3-D looks like water; what else has no colour of its own shows its speed. */
     const int natural = s->dimension == 3 && !d->has_palette && !solids;
     if (natural) p->values = NULL;

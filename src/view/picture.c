@@ -83,6 +83,9 @@ static tobi_status check_frame(const char *path, const tobi_picture *f, tobi_err
         if (!isfinite(f->box_min[k]) || !isfinite(f->box_max[k]) || !(f->box_min[k] < f->box_max[k]))
             return tobi_fail(err, TOBI_INVALID, "%s: the box is empty along %c", path, "xyz"[k]);
     TOBI_TRY(check_particles(path, f, err));
+    if (f->foam_count < 0 || f->foam_count > INT32_MAX || (f->foam_count > 0 && !f->foam))
+        return tobi_fail(err, TOBI_INVALID, "%s: %" PRId64 " points of foam cannot be drawn", path,
+                         f->foam_count);
     if (f->dimension == 3 && !(f->field_of_view >= 1 && f->field_of_view <= 150))
         return tobi_fail(err, TOBI_INVALID, "%s: a field of view of %g degrees, allowed are 1 to 150", path,
                          f->field_of_view);
@@ -263,7 +266,6 @@ static bool sort_by_group(const tobi_picture *f, surface_request *r, int32_t *ro
     free(key);
     return true;
 }
-
 
 static double radius_of(const tobi_picture *f, int64_t i) { return f->radii ? f->radii[i] : f->radius; }
 
@@ -527,6 +529,7 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
         TOBI_TRY(view_paint_glass(c, &s->glass, water, false, film, err));
     end_stage(s, STAGE_SOLIDS);
     if (has_water(s)) TOBI_TRY(draw_water(s, err));
+    TOBI_TRY(view_draw_foam(c, f, err));
     end_stage(s, STAGE_WATER);
     if (c->front) view_draw_box(c, f, true);
     if (s->glass.faces > 0) TOBI_TRY(view_paint_glass(c, &s->glass, water, true, film, err));

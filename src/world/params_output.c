@@ -93,7 +93,9 @@ const tobi_param_table tobi_probe_table = {
     { .key = "picture.axes", BOOL, AT(type, in axes), \
       .doc = "Draw ticks with numbers along edges of the domain." }, \
     { .key = "picture.transparent", BOOL, AT(type, in transparent), \
-      .doc = "Leave the background of the pictures transparent." },
+      .doc = "Leave the background of the pictures transparent." }, \
+    { .key = "picture.foam", BOOL, AT(type, in foam), .def = { 1 }, \
+      .doc = "Draw spray, foam and bubbles in pictures made after tobiuo foam." },
 
 static const tobi_param output_rows[] = {
     { .key = "interval", REAL, AT(tobi_output_def, interval), .def = { 0.01 }, DURATION,

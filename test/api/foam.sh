@@ -13,7 +13,7 @@ cat > splash.json <<'END'
   "output": {"interval": 0.01} }
 END
 expect 0 "come apart into drops" run splash.json --out splash --quiet
-expect 0 "" foam splash --amount 20
+expect 0 "" foam splash --amount 3
 check "it says what it did" grep -qE "^foam: splash/foam, 9 files, up to [0-9.e+]+ particles" out.txt
 check "a file for each output" test -s splash/foam/foam_000008.vtp
 # vtk WHAT FILE KEY=VALUE: VTK reads it and finds that (without VTK, code 77, nothing is checked)
@@ -30,10 +30,22 @@ check "none at the start" test "$(points splash/foam/foam_000000.vtp)" = 0
 check "some at the end" test "$(points splash/foam/foam_000008.vtp)" -gt 50
 check "no parts are left" test -z "$(find splash -name '*.part')"
 
+# Pictures and movies show it, whatever the run has drawn; without foam they are those of the run.
+expect 0 "" picture splash --out white.png
+expect 0 "" picture splash --out plain.png --set output.picture.foam=false
+check "a picture shows it" test "$(cmp white.png plain.png > same.txt; echo $?)" = 1
+mv splash/foam aside
+expect 0 "" picture splash --out without.png
+check "without it there is none" cmp plain.png without.png
+mv aside splash/foam
+expect 0 "draws 9 pictures" movie splash --out sheet.png
+expect 0 "draws 9 pictures" movie splash --out bare.png --set output.picture.foam=false
+check "a sheet of pictures shows it" test "$(cmp sheet.png bare.png > same.txt; echo $?)" = 1
+
 mv splash/foam one
-expect 0 "" foam splash --amount 20 --threads 3
+expect 0 "" foam splash --amount 3 --threads 3
 check "the same bits" diff -r one splash/foam
-expect 0 "there was no room for" foam splash --amount 20 --most 40
+expect 0 "there was no room for" foam splash --amount 3 --most 40
 check "what takes more is told" grep -qE "from 0\.0[0-9]* s on .* --most takes more" err.txt
 
 # Still water makes none.
@@ -53,7 +65,7 @@ expect 1 "has no field 'velocity', which foam needs; output.fields of the scene 
 rm -r splash/foam && : > splash/foam
 expect 1 "splash/foam is no folder" foam splash
 rm splash/foam
-got=0; (ulimit -f 1; "$program" foam splash --amount 20 > out.txt 2> err.txt) || got=$?
+got=0; (ulimit -f 1; "$program" foam splash --amount 3 > out.txt 2> err.txt) || got=$?
 check "a full disk is told" grep -q "cannot write splash/foam/foam_0000" err.txt
 check "by its exit code, $got" test $got = 1
 check "and leaves no part" test -z "$(find splash -name '*.part')"

@@ -2,9 +2,13 @@
    double, the same bits for any number of threads, mistakes in words. */
 #define _GNU_SOURCE 1
 #include "calls.h"
+#include "tobiuo/picture.h"
+#include "tobiuo/results.h"
 #include "view/foam/foam.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define D 0.01
@@ -184,7 +188,7 @@ static void test_same_bits(void **state)
 {
     (void)state;
     tobi_foam *f[3];
-    const tobi_foam_particles a = crash(1, 4, 100000, &f[0]), b = crash(2, 4, 100000, &f[1]);
+    const tobi_foam_particles a = crash(1, 0.5, 100000, &f[0]), b = crash(2, 0.5, 100000, &f[1]);
     assert_true(a.count > 500);
     assert_int_equal(a.count, b.count);
     const size_t n = (size_t)a.count;
@@ -194,7 +198,7 @@ static void test_same_bits(void **state)
     assert_memory_equal(a.life, b.life, n*sizeof *a.life);
     assert_memory_equal(a.ids, b.ids, n*sizeof *a.ids);
     /* twice the amount are twice as many */
-    const tobi_foam_particles c = crash(1, 8, 100000, &f[2]);
+    const tobi_foam_particles c = crash(1, 1, 100000, &f[2]);
     assert_true(fabs((double)c.count/(double)a.count - 2) < 0.2);
     for (int k = 0; k < 3; k++) tobi_foam_free(f[k]);
 }
@@ -204,7 +208,7 @@ static void test_room(void **state)
 {
     (void)state;
     tobi_foam *f;
-    const tobi_foam_particles p = crash(1, 4, 300, &f);
+    const tobi_foam_particles p = crash(1, 0.5, 300, &f);
     assert_true(p.count > 250 && p.count <= 300);
     assert_true(p.left_out > 100);
     tobi_foam_free(f);
@@ -267,6 +271,25 @@ static void test_ids_change(void **state)
     free(r);
 }
 
+/* More water than exec has sums for at first. */
+static void test_much_water(void **state)
+{
+    (void)state;
+    enum { MUCH = 150000 };
+    double (*x)[3] = calloc(MUCH, sizeof *x), (*v)[3] = calloc(MUCH, sizeof *v);
+    tobi_foam_def d = make_def(0);
+    tobi_foam *f;
+    for (int i = 0; i < MUCH; i++) x[i][0] = i%400*D, x[i][1] = i/400*D;
+    d.dimension = 2, d.gravity[1] = -9.81, d.box_max[0] = d.box_max[1] = 4;
+    const tobi_foam_water water = { 0, MUCH, (const double (*)[3])x, (const double (*)[3])v, NULL };
+    OK(tobi_foam_create(&d, &f, &err));
+    assert_true(f->exec.partial_blocks*TOBI_TOTALS < MUCH/4096);
+    OK(tobi_foam_advance(f, &water, &err));
+    assert_true(f->exec.partial_blocks*TOBI_TOTALS >= MUCH/4096 + 1);
+    tobi_foam_free(f);
+    free(x), free(v);
+}
+
 static void test_flat_world(void **state)
 {
     (void)state;
@@ -274,7 +297,7 @@ static void test_flat_world(void **state)
     tobi_foam_def d = make_def(0.2);
     tobi_foam *f;
     tobi_foam_particles p;
-    d.dimension = 2, d.gravity[1] = -9.81, d.gravity[2] = 0, d.amount = 20;
+    d.dimension = 2, d.gravity[1] = -9.81, d.gravity[2] = 0, d.amount = 3;
     for (int i = 0; i < N; i++) r->v[i][1] = r->v[i][2];
     r->water.count = SIDE*SIDE;
     OK(tobi_foam_create(&d, &f, &err));
@@ -284,6 +307,86 @@ static void test_flat_world(void **state)
     for (int64_t k = 0; k < p.count; k++) assert_true(p.positions[k][2] == 0 && p.velocities[k][2] == 0);
     tobi_foam_free(f);
     free(r);
+}
+
+enum { WIDE = 64 };
+
+/* A plate across the view of a box, foam at this x in front of it or behind; the brightness in the middle. */
+static int draw_point(double x, int count)
+{
+    static const double corner[][3] = { { 0.5, -1, -1 }, { 0.5, 2, -1 }, { 0.5, 2, 2 }, { 0.5, -1, 2 } };
+    static const int32_t face[][3] = { { 0, 2, 1 }, { 0, 3, 2 } };
+    static uint8_t rgb[WIDE*WIDE*3];
+    const tobi_picture_mesh plate = { .vertex_count = 4, .vertices = corner, .triangle_count = 2,
+                                      .triangles = face, .color = { 0.2f, 0.1f, 0.1f } };
+    tobi_picture p = tobi_default_picture();
+    double foam[40][3];
+    uint8_t kind[40] = { 0 };
+    for (int k = 0; k < 40; k++) foam[k][0] = x, foam[k][1] = 0.5, foam[k][2] = 0.5;
+    p.width = p.height = WIDE, p.threads = 1, p.radius = 0.1;
+    for (int a = 0; a < 3; a++) p.box_max[a] = 1;
+    p.has_camera = 1, p.eye[0] = -3, p.eye[1] = p.eye[2] = 0.5, p.target[0] = 1;
+    p.target[1] = p.target[2] = 0.5;
+    p.meshes = &plate, p.mesh_count = 1;
+    p.foam = (const double (*)[3])foam, p.foam_kind = kind, p.foam_count = count;
+    OK(tobi_picture_draw(&p, rgb, &err));
+    return rgb[3*(WIDE*WIDE/2 + WIDE/2)];
+}
+
+/* White before a dark plate, hidden behind it. */
+static void test_picture(void **state)
+{
+    (void)state;
+    const int bare = draw_point(0.2, 0), before = draw_point(0.2, 40), behind = draw_point(0.8, 40);
+    if (before < bare + 60) fail_msg("%d before a plate of %d", before, bare);
+    assert_int_equal(behind, bare);
+    tobi_picture p = tobi_default_picture();
+    uint8_t rgb[3];
+    for (int a = 0; a < 3; a++) p.box_max[a] = 1;
+    p.foam_count = 1;
+    REFUSED(tobi_picture_draw(&p, rgb, &err), TOBI_INVALID, "1 points of foam cannot be drawn");
+}
+
+/* What is written for an output is read back; another file is refused. */
+static void test_files(void **state)
+{
+    (void)state;
+    char dir[] = "foam.XXXXXX", path[64];
+    tobi_foam *f;
+    tobi_results *results;
+    tobi_moment m = { 0 };
+    const tobi_foam_particles p = crash(1, 0.2, 100000, &f);
+    assert_non_null(mkdtemp(dir));
+    snprintf(path, sizeof path, "%s/all.pvd", dir);
+    FILE *file = fopen(path, "w");
+    fputs("<DataSet timestep=\"0\" name=\"fluid\" file=\"fluid.vtu\"/>\n", file);
+    fclose(file);
+    OK(tobi_results_open(dir, &results, &err));
+    OK(tobi_results_read_foam(results, 0, &m, &err));
+    assert_int_equal(m.foam_count, 0);
+    snprintf(path, sizeof path, "%s/foam", dir);
+    assert_int_equal(mkdir(path, 0777), 0);
+    snprintf(path, sizeof path, "%s/foam/foam_000000.vtp", dir);
+    OK(tobi_foam_write(path, &p, &err));
+    OK(tobi_results_read_foam(results, 0, &m, &err));
+    assert_int_equal(m.foam_count, p.count);
+    assert_memory_equal(m.foam, p.positions, (size_t)p.count*sizeof *m.foam);
+    assert_memory_equal(m.foam_kind, p.kind, (size_t)p.count);
+    file = fopen(path, "w");
+    fputs("<VTKFile><PolyData><Piece NumberOfPoints=\"1\"><Points>"
+          "<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" "
+          "format=\"ascii\">1 2 3</DataArray></Points></Piece>", file);
+    fclose(file);
+    REFUSED(tobi_results_read_foam(results, 0, &m, &err), TOBI_DAMAGED, "is no file of foam");
+    tobi_moment_free(&m);
+    tobi_results_free(results);
+    tobi_foam_free(f);
+    unlink(path);
+    snprintf(path, sizeof path, "%s/foam", dir);
+    rmdir(path);
+    snprintf(path, sizeof path, "%s/all.pvd", dir);
+    unlink(path);
+    rmdir(dir);
 }
 
 static void test_mistakes(void **state)
@@ -333,7 +436,8 @@ int main(void)
         cmocka_unit_test(test_foam_moves_along), cmocka_unit_test(test_bubbles_rise),
         cmocka_unit_test(test_even_water_makes_none), cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_room), cmocka_unit_test(test_sums), cmocka_unit_test(test_ids_change),
-        cmocka_unit_test(test_flat_world), cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_flat_world), cmocka_unit_test(test_picture), cmocka_unit_test(test_much_water),
+        cmocka_unit_test(test_files), cmocka_unit_test(test_mistakes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

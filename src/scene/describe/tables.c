@@ -79,6 +79,7 @@ static const char head[] =
     "`output.tractions` |\n"
     "| `surface.pvd` | the surface of the liquids and of each piece; `.vtp` in `surface/` | with "
     "`output.surface.write`, or by `tobiuo surface` |\n"
+    "| `foam.pvd` | [spray, foam and bubbles](foam.md); `.vtp` in `foam/` | by `tobiuo foam` |\n"
     "| `grid.pvd` | nodes of the grid of `mlsmpm`; in `grid/` | with `output.grid` |\n"
     "| `frames/` | a picture per output, `frame_000000.png`, and one of each view | with `--frames`, "
     "or by `tobiuo movie` |\n"

@@ -186,6 +186,7 @@ tobi_status foam_fill_cells(tobi_foam *f, const foam_water *before, const foam_w
     foam_cells *c = &f->cells;
     fill_view v = { f, before, after, s, c, NULL };
     c->reach = 2*f->def.spacing;
+    TOBI_TRY(tobi_exec_reserve(&f->exec, before->count, err));
     TOBI_TRY(place_cells(&v, err));
     if (!foam_room(&c->first, &c->first_room, before->count + 1, sizeof *c->first))
         return foam_no_memory(err);

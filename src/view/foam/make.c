@@ -100,6 +100,7 @@ tobi_status foam_make(tobi_foam *f, double s, double dt, tobi_error *err)
     v.most = f->def.most - f->count;
     if (!foam_room(&f->number, &f->number_room, f->before.count + 1, sizeof *f->number))
         return foam_no_memory(err);
+    TOBI_TRY(tobi_exec_reserve(&f->exec, f->before.count, err));
     int64_t count = count_all(&v);
     if (count > v.most) {
         f->left_out += (double)(count - v.most);

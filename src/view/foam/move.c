@@ -85,6 +85,7 @@ tobi_status foam_move(tobi_foam *f, double dt, tobi_error *err)
 {
     if (!foam_room(&f->number, &f->number_room, f->count + 1, sizeof *f->number) ||
         !foam_room(&f->spare, &f->spare_room, f->count, sizeof *f->spare)) return foam_no_memory(err);
+    TOBI_TRY(tobi_exec_reserve(&f->exec, f->count, err));
     const move_view v = { f, dt, f->number };
     tobi_loop(f->exec.threads, f->count, 256, move_all, &v);
     const int64_t kept = tobi_scan(&f->exec, f->count, f->number);

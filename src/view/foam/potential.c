@@ -12,7 +12,7 @@
 #define CREST_LOW 0.06
 #define CREST_HIGH 0.30
 #define CREST_SHARE 0.5          /* of a crest, beside air that is closed in */
-#define RATE 4.0                 /* new ones of a particle in a time sqrt(d/g) */
+#define RATE 30.0                /* new ones of a particle in a time sqrt(d/g) */
 
 typedef struct potential_view { tobi_foam *f; foam_water *w; } potential_view;
 
