@@ -50,7 +50,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
 typedef struct liquid {
     tobi_moment moment;
     tobi_foam_water water;
-    double (*x)[3], (*v)[3];
+    double (*x)[3], (*v)[3], (*solid)[3];
     int64_t *id;
 } liquid;
 
@@ -59,6 +59,7 @@ static void free_liquid(liquid *l)
     tobi_moment_free(&l->moment);
     free(l->x);
     free(l->v);
+    free(l->solid);
     free(l->id);
     *l = (liquid){ 0 };
 }
@@ -94,8 +95,62 @@ static int take_liquid(const foam_options *o, const tobi_looks *looks, liquid *l
         if (id) l->id[n] = (int64_t)id->values[i];
         n++;
     }
-    l->water = (tobi_foam_water){ m->time, n, (const double (*)[3])l->x, (const double (*)[3])l->v, l->id };
+    l->water = (tobi_foam_water){ .time = m->time, .count = n, .positions = (const double (*)[3])l->x,
+                                  .velocities = (const double (*)[3])l->v, .ids = l->id };
     return 0;
+}
+
+/* Of the points of bodies, which may be much nearer to each other than the water's, one in each cell as wide
+   as the spacing; the same ones at every output. */
+typedef struct thinned { int64_t of, count; int64_t *row; } thinned;
+typedef struct cell_row { int64_t cell[3], row; } cell_row;
+
+static int compare_cells(const void *a, const void *b)
+{
+    const cell_row *p = a, *q = b;
+    for (int k = 0; k < 3; k++)
+        if (p->cell[k] != q->cell[k]) return p->cell[k] < q->cell[k] ? -1 : 1;
+    return p->row < q->row ? -1 : p->row > q->row;
+}
+
+static int thin_bodies(double (*x)[3], int64_t count, double spacing, thinned *t)
+{
+    cell_row *cells = malloc((size_t)count*sizeof *cells + 1);
+    int64_t *row = realloc(t->row, (size_t)count*sizeof *row + 1);
+    if (row) t->row = row;
+    if (!cells || !row) {
+        free(cells);
+        return complain("out of memory");
+    }
+    for (int64_t i = 0; i < count; i++) {
+        cells[i].row = i;
+        for (int k = 0; k < 3; k++)
+            cells[i].cell[k] = (int64_t)floor(fmin(fmax(x[i][k]/spacing, -1e15), 1e15));
+    }
+    qsort(cells, (size_t)count, sizeof *cells, compare_cells);
+    t->of = count, t->count = 0;
+    for (int64_t i = 0; i < count; i++)
+        if (i == 0 || memcmp(cells[i].cell, cells[i - 1].cell, sizeof cells->cell) != 0)
+            row[t->count++] = cells[i].row;
+    free(cells);
+    return 0;
+}
+
+static int take_bodies(const tobi_results *results, int64_t k, double spacing, thinned *t, liquid *l)
+{
+    tobi_error err = { 0 };
+    int64_t count;
+    if (tobi_results_read_bodies(results, k, &l->solid, &count, &err) != TOBI_OK)
+        return complain("%s", err.text);
+    const int code = count != t->of ? thin_bodies(l->solid, count, spacing, t) : 0;
+    double (*kept)[3] = malloc((size_t)t->count*sizeof *kept + 1);
+    if (!kept && code == 0) return complain("out of memory");
+    for (int64_t i = 0; code == 0 && i < t->count; i++) memcpy(kept[i], l->solid[t->row[i]], sizeof *kept);
+    free(l->solid);
+    l->solid = kept;
+    l->water.solid_count = code == 0 ? t->count : 0;
+    l->water.solids = (const double (*)[3])kept;
+    return code;
 }
 
 /* Spacing of the liquids: that of the first. */
@@ -148,17 +203,20 @@ static int write_files(const foam_options *o, const tobi_results *results, const
 {
     char *folder = join_path(o->dir, "foam");
     int code = make_series_folder(folder);
+    thinned bodies = { 0 };
     for (int64_t k = 0; code == 0 && k < tobi_results_count(results); k++) {
         liquid l = { 0 };
         tobi_error err = { 0 };
         if (tobi_results_read(results, k, &l.moment, &err) != TOBI_OK) code = complain("%s", err.text);
         if (code == 0) code = take_liquid(o, looks, &l);
+        if (code == 0) code = take_bodies(results, k, find_spacing(looks), &bodies, &l);
         if (code == 0 && tobi_foam_advance(foam, &l.water, &err) != TOBI_OK) code = complain("%s", err.text);
         if (code == 0) code = write_one(folder, k, foam, l.water.time, t);
         t->particles += (double)l.water.count;
         free_liquid(&l);
     }
     if (code == 0) code = write_series_list(o->dir, "foam", results, 0);
+    free(bodies.row);
     free(folder);
     return code;
 }

@@ -33,6 +33,9 @@ typedef struct tobi_foam_water {
     const double (*positions)[3];      /* m                                                             */
     const double (*velocities)[3];     /* m/s                                                           */
     const int64_t *ids;                /* rising; NULL = rows are the same particles at every output    */
+    int64_t solid_count;
+    const double (*solids)[3];         /* m, points that fill bodies, about a spacing apart: there is no
+                                          air; the same rows at every output                            */
 } tobi_foam_water;
 
 /* What there is; valid until the next call. */

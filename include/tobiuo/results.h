@@ -62,6 +62,10 @@ TOBI_API tobi_status tobi_results_read(const tobi_results *results, int64_t outp
 /* Fills the foam of a moment from DIR/foam, which tobi_foam_write wrote; none without that file. */
 TOBI_API tobi_status tobi_results_read_foam(const tobi_results *results, int64_t output, tobi_moment *moment,
                                             tobi_error *err);
+/* The particles that fill the bodies at an output, m, in the same order at each; none without such a file.
+   *positions is malloc'ed and the caller's. */
+TOBI_API tobi_status tobi_results_read_bodies(const tobi_results *results, int64_t output,
+                                              double (**positions)[3], int64_t *count, tobi_error *err);
 /* Fills the tracks of a moment from bodies.csv of the run in dir, up to its time; none without that file. */
 TOBI_API tobi_status tobi_tracks_read(const char *dir, tobi_moment *moment, tobi_error *err);
 /* Adds a point to the track of a body, which is made if there is none. */

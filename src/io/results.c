@@ -249,3 +249,22 @@ tobi_status tobi_results_read_foam(const tobi_results *results, int64_t output, 
     free(path);
     return status;
 }
+
+tobi_status tobi_results_read_bodies(const tobi_results *results, int64_t output, double (**positions)[3],
+                                     int64_t *count, tobi_error *err)
+{
+    TOBI_NEED(results, "the results");
+    TOBI_NEED(positions, "the place for the positions");
+    TOBI_NEED(count, "the place for their number");
+    char *path = NULL;
+    tobi_moment own = { 0 };
+    *positions = NULL, *count = 0;
+    if (asprintf(&path, "%s/bodies/bodies_%06lld.vtu", results->dir, (long long)output) < 0)
+        return tobi_fail(err, TOBI_NO_MEMORY, "results %s: out of memory", results->dir);
+    tobi_status status = tobi_vtu_read(path, &own, err);
+    if (status == TOBI_OK) *positions = own.positions, *count = own.count, own.positions = NULL;
+    else if (status == TOBI_NOT_FOUND) status = TOBI_OK;
+    tobi_moment_free(&own);
+    free(path);
+    return status;
+}

@@ -25,7 +25,8 @@ static rig *make_rig(const double u[3])
         for (int a = 0; a < 3; a++) r->x[i][a] = D*(at[a] + 0.5), r->v[i][a] = u[a];
         r->id[i] = 3*i + 1;
     }
-    r->water = (tobi_foam_water){ 0, N, (const double (*)[3])r->x, (const double (*)[3])r->v, r->id };
+    r->water = (tobi_foam_water){ .count = N, .positions = (const double (*)[3])r->x,
+                                  .velocities = (const double (*)[3])r->v, .ids = r->id };
     return r;
 }
 
@@ -271,6 +272,37 @@ static void test_ids_change(void **state)
     free(r);
 }
 
+/* Water that runs along a body closes it off: no surface there, and what comes into the body is gone. */
+static void test_bodies(void **state)
+{
+    (void)state;
+    double (*body)[3] = calloc(N, sizeof *body);
+    tobi_foam *f[2];
+    tobi_foam_particles p;
+    rig *r = make_crash();
+    for (int k = 0; k < 2; k++) {
+        const tobi_foam_def d = make_def(0.2);
+        for (int i = 0; i < N; i++)
+            for (int a = 0; a < 3; a++) body[i][a] = r->x[i][a] + (a == 2 ? SIDE*D : 0);
+        r->water.solid_count = k ? N : 0, r->water.solids = (const double (*)[3])body;
+        OK(tobi_foam_create(&d, &f[k], &err));
+        OK(tobi_foam_advance(f[k], &r->water, &err));
+    }
+    const int top = N - SIDE*SIDE/2 - SIDE/2;      /* in the middle of the upper side */
+    assert_true(f[0]->normal[top][3] < FOAM_SURFACE && f[0]->normal[top][2] > 0.9f);
+    assert_true(f[1]->normal[top][3] > 0.99f);
+    assert_true(fabsf(f[0]->before.spread[top] - f[1]->before.spread[top]) < 1e-6f);
+    OK(tobi_foam_add(f[1], (double[3]){ 0.06, 0.06, 1.5*SIDE*D }, (double[3]){ 0, 0, 0 }, 1, &err));
+    flow(r, 1e-4);
+    OK(tobi_foam_advance(f[1], &r->water, &err));
+    OK(tobi_foam_read(f[1], &p, &err));
+    for (int64_t k = 0; k < p.count; k++) assert_true(p.ids[k] != 0);
+    r->water.time = 1, r->water.solids = NULL;
+    REFUSED(tobi_foam_advance(f[1], &r->water, &err), TOBI_INVALID, "points of bodies without positions");
+    tobi_foam_free(f[0]), tobi_foam_free(f[1]);
+    free(r), free(body);
+}
+
 /* More water than exec has sums for at first. */
 static void test_much_water(void **state)
 {
@@ -281,7 +313,8 @@ static void test_much_water(void **state)
     tobi_foam *f;
     for (int i = 0; i < MUCH; i++) x[i][0] = i%400*D, x[i][1] = i/400*D;
     d.dimension = 2, d.gravity[1] = -9.81, d.box_max[0] = d.box_max[1] = 4;
-    const tobi_foam_water water = { 0, MUCH, (const double (*)[3])x, (const double (*)[3])v, NULL };
+    const tobi_foam_water water = { .count = MUCH, .positions = (const double (*)[3])x,
+                                    .velocities = (const double (*)[3])v };
     OK(tobi_foam_create(&d, &f, &err));
     assert_true(f->exec.partial_blocks*TOBI_TOTALS < MUCH/4096);
     OK(tobi_foam_advance(f, &water, &err));
@@ -436,7 +469,8 @@ int main(void)
         cmocka_unit_test(test_foam_moves_along), cmocka_unit_test(test_bubbles_rise),
         cmocka_unit_test(test_even_water_makes_none), cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_room), cmocka_unit_test(test_sums), cmocka_unit_test(test_ids_change),
-        cmocka_unit_test(test_flat_world), cmocka_unit_test(test_picture), cmocka_unit_test(test_much_water),
+        cmocka_unit_test(test_flat_world), cmocka_unit_test(test_picture), cmocka_unit_test(test_bodies),
+        cmocka_unit_test(test_much_water),
         cmocka_unit_test(test_files), cmocka_unit_test(test_mistakes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

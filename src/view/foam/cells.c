@@ -39,9 +39,24 @@ bool foam_find_row(const foam_water *a, const foam_water *b, double s, int64_t i
     return true;
 }
 
+/* Rows behind those of water are of bodies, which move straight on. */
+static bool find_solid(const fill_view *v, int64_t i, double x[3], double u[3])
+{
+    const foam_water *a = v->before, *b = v->after;
+    const bool same = b && b->solids == a->solids;
+    for (int k = 0; k < 3; k++) {
+        x[k] = same ? (1 - v->s)*a->solid[i][k] + v->s*b->solid[i][k] : a->solid[i][k];
+        u[k] = 0;
+    }
+    return true;
+}
+
+static int64_t count_of(const foam_water *w) { return w->count + w->solids; }
+
 static bool find_row(const fill_view *v, int64_t i, double x[3], double u[3])
 {
-    if (!foam_find_row(v->before, v->after, v->s, i, x, u)) return false;
+    if (i >= v->before->count) find_solid(v, i - v->before->count, x, u);
+    else if (!foam_find_row(v->before, v->after, v->s, i, x, u)) return false;
     for (int k = 0; k < v->f->def.dimension; k++)
         if (!(x[k] >= v->f->def.box_min[k] - v->c->reach && x[k] <= v->f->def.box_max[k] + v->c->reach) ||
             !isfinite(u[k])) return false;
@@ -78,7 +93,7 @@ static void find_bounds(const void *view, int64_t begin, int64_t end)
     double x[3], u[3];
     for (int64_t part = begin; part < end; part++) {
         double *b = v->bounds[part];
-        const int64_t last = (part + 1)*PART < v->before->count ? (part + 1)*PART : v->before->count;
+        const int64_t all = count_of(v->before), last = (part + 1)*PART < all ? (part + 1)*PART : all;
         for (int a = 0; a < 3; a++) b[a] = INFINITY, b[3 + a] = -INFINITY;
         for (int64_t i = part*PART; i < last; i++)
             if (find_row(v, i, x, u))
@@ -90,7 +105,7 @@ static void find_bounds(const void *view, int64_t begin, int64_t end)
 static tobi_status place_cells(fill_view *v, tobi_error *err)
 {
     foam_cells *c = v->c;
-    const int64_t parts = (v->before->count + PART - 1)/PART;
+    const int64_t parts = (count_of(v->before) + PART - 1)/PART;
     double low[3] = { 0 }, high[3] = { 0 };
     v->bounds = malloc(((size_t)parts + 1)*sizeof *v->bounds);
     if (!v->bounds) return foam_no_memory(err);
@@ -101,7 +116,7 @@ static tobi_status place_cells(fill_view *v, tobi_error *err)
             if (k == 0 || v->bounds[k][3 + a] > high[a]) high[a] = v->bounds[k][3 + a];
         }
     free(v->bounds);
-    const double most = fmax(MOST_CELLS, 4*(double)v->before->count);
+    const double most = fmax(MOST_CELLS, 4*(double)count_of(v->before));
     for (double wide = 1, cells = INFINITY; cells > most; wide *= 1.26) {
         c->edge = wide*c->reach;
         for (int a = 0; a < 3; a++) {
@@ -141,7 +156,8 @@ static void fill_rows(const void *view, int64_t begin, int64_t end)
                 cell[a] = cell_along(c, a, (double)p[a]);
             }
             const int mirrors = (at[0] > 0) + 2*(at[1] > 0) + 4*(at[2] > 0);
-            c->place_raw[to] = (tobi_float4){ p[0], p[1], p[2], (float)mirrors };
+            const float marks = (float)mirrors + (i < v->before->count ? 0 : FOAM_SOLID);
+            c->place_raw[to] = (tobi_float4){ p[0], p[1], p[2], marks };
             c->move_raw[to] = (tobi_float4){ w[0], w[1], w[2], 0 };
             c->of_raw[to] = (int32_t)(k ? -1 - i : i);
             c->key[to] = (uint32_t)((cell[2]*c->n[1] + cell[1])*c->n[0] + cell[0]);
@@ -185,15 +201,16 @@ tobi_status foam_fill_cells(tobi_foam *f, const foam_water *before, const foam_w
 {
     foam_cells *c = &f->cells;
     fill_view v = { f, before, after, s, c, NULL };
+    const int64_t all = count_of(before);
     c->reach = 2*f->def.spacing;
-    TOBI_TRY(tobi_exec_reserve(&f->exec, before->count, err));
+    TOBI_TRY(tobi_exec_reserve(&f->exec, all, err));
     TOBI_TRY(place_cells(&v, err));
-    if (!foam_room(&c->first, &c->first_room, before->count + 1, sizeof *c->first))
+    if (!foam_room(&c->first, &c->first_room, all + 1, sizeof *c->first))
         return foam_no_memory(err);
-    tobi_loop(f->exec.threads, before->count, 0, count_rows, &v);
-    c->count = tobi_scan(&f->exec, before->count, c->first);
+    tobi_loop(f->exec.threads, all, 0, count_rows, &v);
+    c->count = tobi_scan(&f->exec, all, c->first);
     if (c->count > INT32_MAX || !make_room(c, &f->exec)) return foam_no_memory(err);
-    tobi_loop(f->exec.threads, before->count, 0, fill_rows, &v);
+    tobi_loop(f->exec.threads, all, 0, fill_rows, &v);
     tobi_sort_by_key(&f->exec, c->count, (uint32_t)c->cells, c->key, c->order, c->key2, c->order2,
                      c->histogram);
     tobi_loop(f->exec.threads, c->count, 0, sort_entries, &v);

@@ -92,7 +92,7 @@ tobi_status tobi_foam_create(const tobi_foam_def *def, tobi_foam **foam, tobi_er
 
 static void free_water(foam_water *w)
 {
-    void *const arrays[] = { w->x, w->v, w->id, w->rate, w->spread, w->partner };
+    void *const arrays[] = { w->x, w->v, w->id, w->rate, w->spread, w->partner, w->solid };
     for (size_t k = 0; k < sizeof arrays/sizeof *arrays; k++) tobi_array_free(arrays[k]);
     *w = (foam_water){ 0 };
 }
@@ -146,7 +146,12 @@ static tobi_status keep_water(tobi_foam *f, const tobi_foam_water *from, foam_wa
         !foam_room(&w->rate, &room[3], n, sizeof *w->rate) ||
         !foam_room(&w->spread, &room[4], n, sizeof *w->spread) ||
         !foam_room(&w->partner, &room[5], n, sizeof *w->partner)) return foam_no_memory(err);
+    if (!foam_room(&w->solid, &w->solid_room, from->solid_count, sizeof *w->solid))
+        return foam_no_memory(err);
     w->room = room[0], w->count = n, w->time = from->time;
+    if (from->solid_count > 0)
+        memcpy(w->solid, from->solids, (size_t)from->solid_count*sizeof *w->solid);
+    w->solids = from->solid_count;
     water_view v = { .w = w, .from = from, .dimension = f->def.dimension };
     tobi_loop(f->exec.threads, n, 0, copy_rows, &v);
     return v.unsorted ? tobi_fail(err, TOBI_INVALID, "foam: the ids of the particles at %g s do not rise",
@@ -218,6 +223,9 @@ static tobi_status check_water(const tobi_foam *f, const tobi_foam_water *w, tob
     if (w->count < 0 || w->count > INT32_MAX || (w->count > 0 && (!w->positions || !w->velocities)))
         return tobi_fail(err, TOBI_INVALID, "foam: %" PRId64 " particles%s cannot be followed", w->count,
                          w->count > 0 && w->count <= INT32_MAX ? " without positions or velocities" : "");
+    if (w->solid_count < 0 || w->solid_count > INT32_MAX || (w->solid_count > 0 && !w->solids))
+        return tobi_fail(err, TOBI_INVALID, "foam: %" PRId64 " points of bodies%s cannot be taken",
+                         w->solid_count, w->solid_count > 0 ? " without positions" : "");
     if (!isfinite(w->time) || (f->begun && !(w->time > f->before.time)))
         return tobi_fail(err, TOBI_INVALID, "foam: an output at %g s after one at %g s; times must rise",
                          w->time, f->begun ? f->before.time : 0);

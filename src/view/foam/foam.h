@@ -21,6 +21,8 @@ typedef struct foam_water {
     float *rate;                 /* 1/s, new particles                              */
     float *spread;               /* m/s, velocity differences around                */
     int32_t *partner;            /* row at the next output, -1 = none               */
+    int64_t solids, solid_room;  /* points of bodies: rows behind those of water    */
+    double (*solid)[3];
 } foam_water;
 
 /* Water and its images in the sides, in cells. `of`: row; -1 - row of an image. */
@@ -29,7 +31,7 @@ typedef struct foam_cells {
     int64_t n[3], cells, cell_room;
     int32_t *begin;              /* cells + 1 */
     int64_t count, room;
-    tobi_float4 *place;          /* from low; w: 1, 2, 4 for an image across x, y, z */
+    tobi_float4 *place;          /* from low; w: 1, 2, 4 for an image across x, y, z; 8: of a body */
     tobi_float4 *move;           /* velocity */
     int32_t *of;
     tobi_float4 *place_raw, *move_raw;
@@ -39,6 +41,8 @@ typedef struct foam_cells {
     int64_t first_room;
     int64_t *histogram;
 } foam_cells;
+
+#define FOAM_SOLID 8.0f
 
 /* A diffuse particle. */
 typedef struct foam_drop {

@@ -1,18 +1,20 @@
 /* Diffuse particles through a substep (Ihmsen et al. 2012, section 3.3). By how much water is around, each is
    spray, which flies; foam, which moves with the water; or a bubble, which rises and is dragged along, its
-   velocity taken exactly through the substep. Foam and spray dissolve, bubbles do not. Drawback: they feel
-   neither each other nor bodies. */
+   velocity taken exactly through the substep. Foam and spray dissolve, bubbles do not; what comes into a body
+   is gone. Drawback: they do not feel each other. */
 #include "view/foam/foam.h"
 
 typedef struct move_view { tobi_foam *f; double dt; int64_t *first; } move_view;
 
-/* Fullness of the water at x, and its mean velocity there. */
+#define INSIDE 0.6f              /* fullness of a body, above which a place is in it */
+
+/* Fullness of water and bodies at x, and the water's mean velocity; INFINITY: in a body. */
 static float look_around(const tobi_foam *f, const double x[3], double u[3])
 {
     const foam_cells *c = &f->cells;
     const float inverse = (float)(1/c->reach);
     const float p[3] = { (float)(x[0] - c->low[0]), (float)(x[1] - c->low[1]), (float)(x[2] - c->low[2]) };
-    float sum = 0, mean[3] = { 0, 0, 0 };
+    float sum = 0, solid = 0, mean[3] = { 0, 0, 0 };
     int64_t from, to;
     foam_runs r = foam_first_run(c, p);
     while (foam_next_run(c, &r, &from, &to))
@@ -21,11 +23,15 @@ static float look_around(const tobi_foam *f, const double x[3], double u[3])
             const float d[3] = { q.x - p[0], q.y - p[1], q.z - p[2] };
             const float square = d[0]*d[0] + d[1]*d[1] + d[2]*d[2], w = 1 - sqrtf(square)*inverse;
             if (!(w > 0)) continue;
+            if (q.w >= FOAM_SOLID) {
+                solid += w;
+                continue;
+            }
             sum += w;
             mean[0] += w*v.x, mean[1] += w*v.y, mean[2] += w*v.z;
         }
     for (int a = 0; a < 3; a++) u[a] = sum > 0 ? (double)(mean[a]/sum) : 0;
-    return sum/f->full;
+    return solid > INSIDE*f->full ? INFINITY : (sum + solid)/f->full;
 }
 
 /* Spray beyond a side is gone; what is in water stays in the domain. */
@@ -44,6 +50,10 @@ static void move_one(const tobi_foam *f, double dt, foam_drop *d)
     double u[3];
     const float fullness = look_around(f, d->x, u);
     d->age += (float)dt;
+    if (fullness == INFINITY) {
+        d->kind = -1;
+        return;
+    }
     if (fullness < FOAM_SPRAY) {
         d->kind = TOBI_SPRAY;
         for (int a = 0; a < 3; a++) {

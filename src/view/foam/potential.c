@@ -17,7 +17,7 @@
 typedef struct potential_view { tobi_foam *f; foam_water *w; } potential_view;
 
 /* What is around a particle of water. */
-typedef struct around { float weight, closing, away[3]; } around;
+typedef struct around { float weight, water, closing, away[3]; } around;
 
 static void add_pair(around *a, tobi_float4 p, tobi_float4 u, tobi_float4 q, tobi_float4 v, float inverse)
 {
@@ -26,8 +26,10 @@ static void add_pair(around *a, tobi_float4 p, tobi_float4 u, tobi_float4 q, tob
     if (!(w > 0) || !(r > 0)) return;
     const float speed = sqrtf(e[0]*e[0] + e[1]*e[1] + e[2]*e[2]);
     a->weight += w;
-    a->closing += w*(speed - (e[0]*d[0] + e[1]*d[1] + e[2]*d[2])/r);
     for (int k = 0; k < 3; k++) a->away[k] += w*d[k]/r;
+    if (q.w >= FOAM_SOLID) return;
+    a->water += w;
+    a->closing += w*(speed - (e[0]*d[0] + e[1]*d[1] + e[2]*d[2])/r);
 }
 
 /* Normal, fullness, velocity differences. */
@@ -40,7 +42,7 @@ static void find_normals(const void *view, int64_t begin, int64_t end)
         const tobi_float4 p = c->place[k], u = c->move[k];
         around a = { 0 };
         int64_t from, to;
-        if (c->of[k] < 0) continue;
+        if (c->of[k] < 0 || c->of[k] >= v->w->count) continue;
         foam_runs r = foam_first_run(c, (const float[3]){ p.x, p.y, p.z });
         while (foam_next_run(c, &r, &from, &to))
             for (int64_t j = from; j < to; j++)
@@ -49,7 +51,7 @@ static void find_normals(const void *view, int64_t begin, int64_t end)
         const float length = sqrtf(a.away[0]*a.away[0] + a.away[1]*a.away[1] + a.away[2]*a.away[2]);
         for (int m = 0; m < 3; m++) n[m] = length > 0 ? a.away[m]/length : 0;
         n[3] = (1 + a.weight)/v->f->full;
-        v->w->spread[c->of[k]] = a.weight > 0 ? a.closing/(2*a.weight) : 0;
+        v->w->spread[c->of[k]] = a.water > 0 ? a.closing/(2*a.water) : 0;
     }
 }
 
@@ -66,6 +68,7 @@ static float find_crest(const tobi_foam *f, int64_t k, const float *n, bool *nea
     while (foam_next_run(c, &r, &from, &to))
         for (int64_t j = from; j < to; j++) {
             const tobi_float4 q = c->place[j];
+            if (q.w >= FOAM_SOLID) continue;
             const int64_t row = c->of[j] < 0 ? -1 - c->of[j] : c->of[j];
             const float *m = f->normal[row], d[3] = { q.x - p.x, q.y - p.y, q.z - p.z };
             const float distance = sqrtf(d[0]*d[0] + d[1]*d[1] + d[2]*d[2]), w = 1 - distance*inverse;
@@ -88,7 +91,7 @@ static void find_rates(const void *view, int64_t begin, int64_t end)
     const double energy = f->pull*f->def.spacing, most = f->def.amount*RATE*f->pull/f->scale;
     for (int64_t k = begin; k < end; k++) {
         const int64_t i = c->of[k];
-        if (i < 0) continue;
+        if (i < 0 || i >= v->w->count) continue;
         const tobi_float4 u = c->move[k];
         const float *n = f->normal[i];
         const double square = (double)(u.x*u.x + u.y*u.y + u.z*u.z);
