@@ -132,6 +132,7 @@ error_t parse_scene_option(struct argp_state *state, int key, const char *value,
 typedef struct drive_options {
     tobi_scene *scene;    /* for the places of what its run refuses */
     const char *dir;      /* where the results go, for messages  */
+    const char *told;     /* losses that the start has told; or NULL */
     double end;           /* s                                   */
     int quiet;            /* 1: no progress line                 */
     int (*between)(void *user, tobi_world *world);      /* before each step, 1: stop; or NULL */
@@ -212,14 +213,19 @@ char *movie_of_view(const char *out, const char *view);
 int make_small_movie(const char *dir, const char *out, double *slow);
 /* A movie of DIR/frames with so many pictures per second; whatever is there is replaced. */
 int encode_pictures(const char *dir, const char *out, double rate);
-/* Number of pictures in DIR/frames; one of them, NULL: no memory. */
+/* Number of pictures in DIR/frames before the first that is missing; whether one is there; its path, NULL: no
+   memory. */
 int64_t count_pictures(const char *dir, const char *view);
+int is_picture(const char *dir, const char *view, int64_t number);
 char *frame_path(const char *dir, const char *view, int64_t number);
 /* draw.c: draws from the results of the run in dir, with values of its scene changed, the pictures that
-   folder/frames lacks, from the first missing one on. Returns the exit code. */
+   folder/frames lacks. Returns the exit code. */
 int draw_missing(const char *dir, const char *view, const overrides *set, const char *folder);
-/* sheet.c: whether the PNG has an alpha channel. */
+/* The path of the first that cannot be read to its end; NULL: none, or no memory. The caller frees. */
+char *find_damaged(const char *dir, const char *view);
+/* sheet.c: whether the PNG has an alpha channel; whether it cannot be read to its end. */
 int is_transparent(const char *path);
+int is_damaged(const char *path);
 /* A dozen of them in one PNG. Returns the exit code. */
 int make_sheet(const char *dir, const char *view, const char *out);
 

@@ -175,14 +175,23 @@ static int draw(const draw_options *o, source *s)
     return code;
 }
 
-static int draw_from(source *s, const char *dir, const char *view, const char *folder, int64_t first)
+/* The number of the first picture from `k` on that is not there. */
+static int64_t find_gap(const char *folder, const char *view, int64_t k)
+{
+    while (is_picture(folder, view, k)) k++;
+    return k;
+}
+
+/* Those between others that are there, too. */
+static int draw_gaps(source *s, const char *dir, const char *view, const char *folder)
 {
     const int64_t count = tobi_results_count(s->results);
+    long long missing = 0;
     int code = 0;
-    if (first < count)
-        fprintf(stderr, "tobiuo: note: draws %lld pictures into %s/frames\n", (long long)(count - first),
-                folder);
-    for (int64_t k = first; code == 0 && k < count; k++) {
+    for (int64_t k = 0; (k = find_gap(folder, view, k)) < count; k++) missing++;
+    if (missing > 0) fprintf(stderr, "tobiuo: note: draws %lld picture%s into %s/frames\n", missing,
+                             missing > 1 ? "s" : "", folder);
+    for (int64_t k = 0; code == 0 && (k = find_gap(folder, view, k)) < count; k++) {
         char *path = frame_path(folder, view, k);
         code = path ? draw_output(s, dir, k) : complain("out of memory");
         if (code == 0) code = write_drawing(s, path);
@@ -199,7 +208,7 @@ int draw_missing(const char *dir, const char *view, const overrides *set, const 
     int code = open_source(&s, dir, view, set);
     if (code == 0 && mkdir(frames, 0777) != 0 && errno != EEXIST)
         code = complain("cannot make the folder %s: %s", frames, strerror(errno));
-    if (code == 0) code = draw_from(&s, dir, view, folder, count_pictures(folder, view));
+    if (code == 0) code = draw_gaps(&s, dir, view, folder);
     free_source(&s);
     free(frames);
     return code;

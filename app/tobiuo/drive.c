@@ -5,6 +5,7 @@
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
+#include <string.h>
 
 static volatile sig_atomic_t caught;
 
@@ -58,7 +59,7 @@ static void print_end(const drive_options *o, watch *w, const tobi_world *world,
 {
     char text[32];
     watch_say(w, world);
-    if (*lost) complain("results in %s: %s", o->dir, lost);
+    if (*lost && !(o->told && strcmp(lost, o->told) == 0)) complain("results in %s: %s", o->dir, lost);
     if (o->quiet) return;
     printf("%s at t = %.9g s after %lld steps in %s; results in %s\n", done ? "done" : "stopped",
            tobi_world_time(world), (long long)w->steps, duration_text(wall, text), o->dir);

@@ -95,14 +95,19 @@ char *frame_path(const char *dir, const char *view, int64_t number)
         ? NULL : path;
 }
 
+int is_picture(const char *dir, const char *view, int64_t number)
+{
+    char *path = frame_path(dir, view, number);
+    const int there = path && access(path, R_OK) == 0;
+    free(path);
+    return there;
+}
+
 int64_t count_pictures(const char *dir, const char *view)
 {
-    for (int64_t k = 0;; k++) {
-        char *path = frame_path(dir, view, k);
-        const int there = path && access(path, R_OK) == 0;
-        free(path);
-        if (!there) return k;
-    }
+    int64_t k = 0;
+    while (is_picture(dir, view, k)) k++;
+    return k;
 }
 
 static int compare_numbers(const void *a, const void *b)
@@ -190,18 +195,12 @@ static int add_options(const struct kind *kind, int alpha, char **argument, int 
     return n;
 }
 
-/* The first picture that does not end as a PNG does; NULL: none, or no memory. */
-static char *find_damaged(const char *dir, const char *view)
+char *find_damaged(const char *dir, const char *view)
 {
-    static const char end[] = "IEND\xae\x42\x60\x82";
     const int64_t count = count_pictures(dir, view);
     for (int64_t k = 0; k < count; k++) {
-        char *path = frame_path(dir, view, k), last[sizeof end] = "";
-        FILE *file = path ? fopen(path, "rb") : NULL;
-        if (file && fseek(file, -(long)(sizeof end - 1), SEEK_END) == 0 &&
-            fread(last, 1, sizeof end - 1, file) < sizeof end - 1) last[0] = '\0';
-        if (file) fclose(file);
-        if (path && memcmp(last, end, sizeof end - 1) != 0) return path;
+        char *path = frame_path(dir, view, k);
+        if (path && is_damaged(path)) return path;
         free(path);
     }
     return NULL;

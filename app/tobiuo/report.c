@@ -80,10 +80,23 @@ static char *join(const char *dir, const char *name)
 
 /* --- what the page is made of --- */
 
-static json_t *read_json(const char *dir, const char *name)
+/* NULL: there is none, or it is damaged, which is said and counted. */
+static json_t *read_json(report *r, const char *name)
 {
-    char *path = join(dir, name);
-    json_t *json = json_load_file(path, 0, NULL);
+    char *path = join(r->dir, name);
+    json_error_t why;
+    const int there = access(path, F_OK) == 0;
+    json_t *json = there ? json_load_file(path, 0, &why) : NULL;
+    if (json && !json_is_object(json) && !json_is_array(json)) {
+        json_decref(json);
+        json = NULL;
+        snprintf(why.text, sizeof why.text, "no object");
+    }
+    if (there && !json) {
+        complain("%s is damaged, and the report does without it: line %d: %s", path, why.line, why.text);
+        snprintf(r->damaged + strlen(r->damaged), sizeof r->damaged - strlen(r->damaged), "%s%s",
+                 *r->damaged ? ", " : "", name);
+    }
     free(path);
     return json;
 }
@@ -106,7 +119,7 @@ static void build_world(report *r)
     tobi_report *mistakes = NULL;
     char *path = join(r->dir, "resolved.json");
     tobi_status status = r->scene ? tobi_scene_load(path, NULL, &r->loaded, &mistakes, &err) : TOBI_NOT_FOUND;
-    if (!r->scene) snprintf(err.text, sizeof err.text, "there is no resolved.json");
+    if (!r->scene) snprintf(err.text, sizeof err.text, "there is no whole resolved.json");
     if (status == TOBI_OK) tobi_scene_build(r->loaded, &r->world, &err);
     snprintf(r->why, sizeof r->why, "%.*s", (int)sizeof r->why - 1, err.text);
     tobi_report_free(mistakes);
@@ -128,9 +141,9 @@ static int read_run(report *r)
     const int time = table_column(&r->history, "time");
     const double end = r->history.rows ? table_number(&r->history, r->history.rows - 1, time) : 0;
     if (r->from > 0 && !(r->from < end)) return complain("--from %g: the run ends at %g s", r->from, end);
-    r->scene = read_json(r->dir, "resolved.json");
-    r->summary = read_json(r->dir, "summary.json");
-    r->inputs = read_json(r->dir, "inputs.json");
+    r->scene = read_json(r, "resolved.json");
+    r->summary = read_json(r, "summary.json");
+    r->inputs = read_json(r, "inputs.json");
     const char *method = json_string_value(report_value(r, "method"));
     r->method = method ? method : "";
     r->dimension = json_integer_value(report_value(r, "dimension")) == 2 ? 2 : 3;
@@ -225,6 +238,27 @@ static void embed(const report *r, const char *before, const char *type, const c
     fputs(after, r->file);
 }
 
+/* Pictures that were deleted or damaged, or that an older end of the run left out. */
+static void write_gap(const report *r)
+{
+    const int64_t count = count_pictures(r->dir, NULL);
+    if (count < (int64_t)r->history.rows)
+        fprintf(r->file, "<p>The picture of output %lld is missing, and nothing from there on is shown. "
+                "<code>tobiuo movie</code> draws it.</p>\n", (long long)count);
+}
+
+static void write_no_movie(const report *r)
+{
+    char *damaged = find_damaged(r->dir, NULL);
+    if (!damaged) fputs("<p>There is no movie: it needs ffmpeg.</p>\n", r->file);
+    else {
+        fputs("<p>There is no movie: the picture ", r->file);
+        html_text(r->file, damaged);
+        fputs(" is damaged. Delete it, and <code>tobiuo movie</code> draws it anew.</p>\n", r->file);
+    }
+    free(damaged);
+}
+
 static void write_pictures(const report *r)
 {
     char *sheet = join(r->dir, "report_sheet.png"), *movie = join(r->dir, "report_movie.mp4");
@@ -234,6 +268,7 @@ static void write_pictures(const report *r)
         fputs("<p>There are none: the scene was run without <code>--frames</code>. "
               "<code>tobiuo movie</code> draws them.</p>\n", r->file);
     } else {
+        write_gap(r);
         if (make_sheet(r->dir, NULL, sheet) == 0)
             embed(r, "<img alt=\"moments of the run\" src=\"", "image/png", sheet, "\">\n");
         if (count_pictures(r->dir, NULL) > 1) {
@@ -242,7 +277,7 @@ static void write_pictures(const report *r)
                         slow, slow > 1 ? " times slower than the scene." : ".");
                 embed(r, "<video controls loop muted src=\"", "video/mp4", movie, "\"></video>\n");
             } else {
-                fputs("<p>There is no movie: it needs ffmpeg.</p>\n", r->file);
+                write_no_movie(r);
             }
         }
     }

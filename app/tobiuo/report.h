@@ -8,6 +8,7 @@ typedef struct report {
     const char *dir;
     FILE *file;                         /* the page                                               */
     json_t *scene, *summary, *inputs;   /* resolved.json, summary.json, inputs.json; NULL: not there */
+    char damaged[80];                   /* names of those that are there and cannot be read       */
     tobi_world *world;                  /* made of the scene, not started; NULL: see why          */
     tobi_scene *loaded;
     char why[300];                      /* why there is no world                                  */

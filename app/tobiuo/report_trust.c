@@ -49,6 +49,10 @@ static int is_liquid(const report *r)
 static void judge_outcome(const report *r)
 {
     const char *outcome = json_string_value(json_object_get(r->summary, "outcome"));
+    if (*r->damaged)
+        say(r, WRONG, "files", "Damaged, and left out: %s. The lines that need them are missing.",
+            r->damaged);
+    if (strstr(r->damaged, "summary.json")) return;
     if (!outcome) say(r, LOOK, "end", "The run has not ended: there is no summary.json. Tables go as "
         "far as it got.");
     else if (strcmp(outcome, "complete") == 0) say(r, GOOD, "end", "The run reached its end.");

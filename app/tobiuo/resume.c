@@ -43,13 +43,15 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
     } else if (tobi_scene_note_files(scene, o->dir, tobi_world_time(world), &err) != TOBI_OK) {
         code = complain("%s", err.text);
     } else {
-        drive_options d = { .scene = scene, .dir = o->dir, .end = tobi_scene_world_def(scene)->end_time,
-                            .quiet = o->quiet };
+        char *told = strdup(tobi_run_losses(run));
+        drive_options d = { .scene = scene, .dir = o->dir, .told = told,
+                            .end = tobi_scene_world_def(scene)->end_time, .quiet = o->quiet };
         if (!o->quiet) fprintf(stderr, "tobiuo: %s\n", tobi_run_note(run));
         if (*tobi_run_losses(run)) complain("results in %s: %s", o->dir, tobi_run_losses(run));
         if (!o->quiet && !(tobi_world_time(world) < d.end))
             complain("the run has reached its end, %g s; --until S takes it on", d.end);
         code = drive(world, run, &d);
+        free(told);
     }
     tobi_run_free(run);
     tobi_world_destroy(world);

@@ -17,8 +17,8 @@ typedef struct sheet {
     png_bytep pixels;                   /* owned                  */
 } sheet;
 
-/* The picture of an output as RGB, a transparent one on white. Returns 0, or EXIT_ERROR after a complaint;
-   *pixels is the caller's. */
+/* The picture of an output as RGB, a transparent one on white. Returns 1, or 0 and image->message; *pixels is
+   the caller's. */
 static int read_picture(const char *path, png_image *image, png_bytep *pixels)
 {
     static const png_color white = { 255, 255, 255 };
@@ -27,14 +27,22 @@ static int read_picture(const char *path, png_image *image, png_bytep *pixels)
     if (png_image_begin_read_from_file(image, path)) {
         image->format = PNG_FORMAT_RGB;
         *pixels = malloc(PNG_IMAGE_SIZE(*image) + 1);
-        if (*pixels && png_image_finish_read(image, &white, *pixels, 0, NULL)) return 0;
+        if (*pixels && png_image_finish_read(image, &white, *pixels, 0, NULL)) return 1;
     }
-    const int code = complain("cannot read %s: %s", path, *image->message ? image->message : "out of "
-        "memory");
+    if (!*image->message) snprintf(image->message, sizeof image->message, "out of memory");
     png_image_free(image);
     free(*pixels);
     *pixels = NULL;
-    return code;
+    return 0;
+}
+
+int is_damaged(const char *path)
+{
+    png_image image;
+    png_bytep pixels;
+    const int whole = read_picture(path, &image, &pixels);
+    free(pixels);
+    return !whole;
 }
 
 /* Averages the picture into the cell whose corner is at (x0, y0). */
@@ -80,7 +88,10 @@ static int draw_cell(sheet *s, const char *dir, const char *view, int cell)
     png_bytep pixels;
     char *path = frame_path(dir, view, number);
     if (!path) return complain("out of memory");
-    int code = read_picture(path, &image, &pixels);
+    int code = 0;
+    if (!read_picture(path, &image, &pixels))
+        code = complain("cannot read %s: %s; delete it, and tobiuo movie draws it anew from the results",
+                        path, image.message);
     if (code == 0 && cell == 0) code = lay_out(s, &image);
     if (code == 0)
         shrink(s, &image, pixels, (unsigned)(cell%s->columns*(CELL + GAP)),

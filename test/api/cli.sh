@@ -417,6 +417,7 @@ expect 0 "" run long.json --quiet --out whole
 expect 0 "" run long.json --quiet --out gap --until 0.1
 sed -i -e 3d -e 6d gap/history.csv
 expect 0 "results in gap: history.csv lacks rows of earlier outputs: 2" resume gap --quiet --until 0.2
+check "which is said once" test "$(grep -c lacks err.txt)" = 1
 expect 0 "" run long.json --quiet --out halves --until 0.1
 cp -p swing.lua good.lua && echo 'table.insert({}, 2^53, 1)' > swing.lua
 expect 1 "swing.lua: endless loop? stopped after 3 s of processor time, inside one call" resume halves

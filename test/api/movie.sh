@@ -33,8 +33,10 @@ check "a run goes on without its movie (exit code $got)" test $got = 1 -a -s nev
 check "and says so" grep -q "the run goes on and keeps its pictures; later: tobiuo movie never" err.txt
 check "pictures drawn afterwards are those of the run" diff -r plain/frames "100%d run/frames"
 rm "100%d run/frames/frame_000007.png"
-expect 0 "draws" movie "100%d run" --out whole.png
-check "one that is missing is drawn" cmp -s "100%d run/frames/frame_000007.png" plain/frames/frame_000007.png
+mv "100%d run/fluid/fluid_000009.vtu" kept.vtu
+expect 0 "draws 1 picture into" movie "100%d run" --out whole.png
+mv kept.vtu "100%d run/fluid/fluid_000009.vtu"
+check "the one that is missing is drawn" cmp -s "100%d run/frames/frame_000007.png" plain/frames/frame_000007.png
 rm -rf plain/fluid* plain/frames/frame_000010.png
 expect 0 "No such file" movie plain --out kept.png
 rm -rf plain/frames
@@ -82,6 +84,9 @@ expect 0 "" movie "100%d run"
 cp -r "100%d run" hurt && rm hurt/movie.mp4 hurt/fluid/fluid_000010.vtu hurt/frames/frame_000010.png
 expect 3 "hurt/movie.mp4 ends before output 10 of 10, whose picture is missing" movie hurt
 truncate -s 1000 hurt/frames/frame_000003.png
+expect 1 "frame_000003.png is damaged; delete it, and the movie draws it anew" movie hurt --force
+cp hurt/frames/frame_000004.png hurt/frames/frame_000003.png
+printf '%0100d' 0 | dd of=hurt/frames/frame_000003.png bs=1 seek=1000 conv=notrunc status=none
 expect 1 "frame_000003.png is damaged; delete it, and the movie draws it anew" movie hurt --force
 head -n 1 hurt/history.csv > one.csv && mv one.csv hurt/history.csv
 expect 1 "hurt/history.csv does not tell the times of two outputs, which a movie needs" movie hurt --force

@@ -96,6 +96,13 @@ expect 1 "cannot read torn/frames/frame_000000.png" movie torn --out none.png
 got=0; PATH=/nonexistent "$program" report tank --out bare.html > out.txt 2> err.txt || got=$?
 check "neither gnuplot nor ffmpeg: exit code 0 (was $got)" test $got = 0
 check "both are named" test "$(grep -c 'apt-get install' err.txt)" = 2
+cp -r tank hurt && rm hurt/frames/frame_000003.png && truncate -s 100 hurt/summary.json
+got=0; PATH=/nonexistent "$program" report hurt > out.txt 2> err.txt || got=$?
+check "a summary that is damaged: exit code 0 (was $got)" test $got = 0
+check "is named" grep -q "hurt/summary.json is damaged, and the report does without it: line" err.txt
+check "on the page, too" says hurt/report.html "Damaged, and left out: summary.json."
+check "which does not say that the run has not ended" test "$(grep -c 'has not ended' hurt/report.html)" = 0
+check "a picture in the middle that is gone" says hurt/report.html "The picture of output 3 is missing, and nothing"
 check "and the page says so" says bare.html "There are none: they need gnuplot."
 check "of the movie too" says bare.html "There is no movie: it needs ffmpeg."
 check "no remains" test -z "$(find . -name '*.part' -o -name 'report_*')"
