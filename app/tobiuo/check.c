@@ -73,6 +73,9 @@ static void print_bodies(const tobi_world *world, int dimension)
             printf(", inertia %.4g %.4g %.4g kg m2", m.inertia[0], m.inertia[4], m.inertia[8]);
         else printf(", inertia %.4g kg m2/m", m.inertia[8]);
         print_flotation(&m);
+        if (m.solids > 0)
+            printf("; without the %d solid%s that it holds, so no draught", m.solids,
+                   m.solids > 1 ? "s" : "");
         printf("\n");
     }
     if (count > LISTED) printf("body             and %d more that move by forces\n", count - LISTED);

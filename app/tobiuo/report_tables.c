@@ -2,6 +2,7 @@
    Drawback: an extreme between two outputs is not seen. */
 #include "report.h"
 #include "plot.h"
+#include "tobiuo/matter.h"
 #include <math.h>
 #include <string.h>
 
@@ -96,6 +97,35 @@ static void write_columns(const report *r, const part *p, tobi_table list, const
     if (begun) fputs("</table></div>\n", r->file);
 }
 
+/* Of bodies that move by forces, as they start; `tobiuo check` tells the same. */
+static void write_body_matter(const report *r)
+{
+    const char *each = r->dimension == 2 ? "/m" : "";
+    tobi_body_matter m;
+    int begun = 0;
+    for (int k = 0; r->world && tobi_world_body_matter(r->world, k, &m) == TOBI_OK; k++) {
+        if (m.dynamics == TOBI_PRESCRIBED) continue;
+        if (!begun++)
+            fprintf(r->file, "<h3>Bodies that move by forces, at the start</h3>\n<div class=wide><table>"
+                    "<tr><th>body<th>mass, kg%s<th>volume, m3%s<th>of the liquid's density"
+                    "<th>centre of mass, m<th>inertia, kg m2%s<th>draught, m<th>GM about x, y, z, m"
+                    "<th class=doc>\n", each, each, each);
+        fputs("<tr><td>", r->file);
+        html_text(r->file, tobi_world_body_name(r->world, k));
+        fprintf(r->file, "<td>%.5g<td>%.5g<td>", m.mass, m.volume);
+        if (m.liquid > 0) fprintf(r->file, "%.4g", m.mass/m.volume/m.liquid);
+        fprintf(r->file, "<td>%.4g %.4g %.4g<td>", m.centre[0], m.centre[1], m.centre[2]);
+        if (r->dimension == 3) fprintf(r->file, "%.4g %.4g ", m.inertia[0], m.inertia[4]);
+        fprintf(r->file, "%.4g<td>", m.inertia[8]);
+        if (m.draught > 0)
+            fprintf(r->file, "%.4g<td>%.4g %.4g %.4g", m.draught, m.metacentre[0], m.metacentre[1],
+                    m.metacentre[2]);
+        else fputs("<td>", r->file);
+        fprintf(r->file, "<td class=doc>%s\n", m.solids > 0 ? "without the solids that it holds" : "");
+    }
+    if (begun) fputs("</table></div>\n", r->file);
+}
+
 static void write_bodies(const report *r)
 {
     const table *t = &r->bodies;
@@ -150,6 +180,7 @@ void write_tables(const report *r)
         "Quantities that are 0 throughout are left out.", r->file);
     if (r->from > 0) fprintf(r->file, " Means, least and most are of the time from %g s on.", r->from);
     fputs("</p>\n", r->file);
+    write_body_matter(r);
     write_bodies(r);
     write_held(r, &r->lines, TOBI_TABLE_LINES, "_tension", "Line");
     write_held(r, &r->joints, TOBI_TABLE_JOINTS, "_gap", "Joint");

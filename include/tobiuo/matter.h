@@ -8,10 +8,11 @@ extern "C" {
 #endif
 
 /* A body as it starts. From draught on 0 where it does not float upright in the only liquid of the world, or
-   that is not known: for vessels, bodies that deform, have a hinge, a guide or a joint, or a mesh with parts
-   that overlap. */
+   that is not known: for vessels, bodies that deform, hold a solid, have a hinge, a guide or a joint, or a
+   mesh with parts that overlap. */
 typedef struct tobi_body_matter {
     int dynamics;                 /* tobi_dynamics                                                    */
+    int solids;                   /* that are clamped to it; the rest is of the body alone            */
     double mass, volume;          /* kg, m3; in 2-D per metre of depth                                */
     double centre[3];             /* m, of its mass                                                   */
     double inertia[9];            /* kg m2 about the centre                                           */

@@ -33,6 +33,19 @@ static int find_up(const tobi_world *w, int *sign)
     return count == 1 ? up : -1;
 }
 
+static int count_held(const tobi_world *w, const char *name)
+{
+    const size_t length = strlen(name);
+    int count = 0;
+    for (int k = 0; k < w->system_count; k++)
+        for (int n = 0; n < w->system[k].solid_count; n++)
+            for (const char *at = w->system[k].solids[n].clamped_to; at; at = strchr(at, ',')) {
+                at += *at == ',';
+                count += strncmp(at, name, length) == 0 && (at[length] == ',' || at[length] == '\0');
+            }
+    return count;
+}
+
 static int is_joined(const tobi_world *w, int body)
 {
     const tobi_constraints *c = &w->sim.constraints;
@@ -63,9 +76,9 @@ tobi_status tobi_world_body_matter(const tobi_world *w, int body, tobi_body_matt
     if (body < 0 || body >= w->sim.body_count) return TOBI_NOT_FOUND;
     const tobi_body *b = &w->sim.bodies[body];
     *m = (tobi_body_matter){ .dynamics = b->rigid.kind, .mass = b->info.mass, .volume = b->info.volume,
-                              .liquid = find_liquid(w) };
+                              .solids = count_held(w, b->name), .liquid = find_liquid(w) };
     memcpy(m->centre, b->rest.centre, sizeof m->centre);
     memcpy(m->inertia, b->info.inertia, sizeof m->inertia);
-    if (b->rigid.kind != TOBI_PRESCRIBED && !is_joined(w, body)) find_flotation(w, b, m);
+    if (b->rigid.kind != TOBI_PRESCRIBED && !is_joined(w, body) && m->solids == 0) find_flotation(w, b, m);
     return TOBI_OK;
 }

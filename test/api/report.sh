@@ -115,6 +115,8 @@ check "a plate of 0.4 spacings" says bare.html "Narrowest 0.04 m, 0.4 spacings."
 check "a dam" says bare.html "Water stands beside free floor"
 check "waves of dfsph" says bare.html "Set dfsph.support to 3"
 check "a table of the box" says bare.html "Body box & co"
+check "its mass, and its share of the water's density" grep -qF "<tr><td>box &amp; co<td>4<td>0.008<td>0.5<td>" bare.html
+check "a plate that stays is not among them" test "$(grep -c '<td>plate<td>' bare.html)" = 0
 check "of the probes" says bare.html "Probe P"
 check "of each kind of probe" says bare.html "Volume of liquid in the box"
 check "with units" says bare.html "<td>Pa<td>"

@@ -91,6 +91,18 @@ static void a_hull_in_a_world(void **state)
         assert_true(wet || (m.draught == 0 && m.liquid == 0));
         assert_int_equal(tobi_world_body_matter(w, 1, &m), TOBI_NOT_FOUND);
         assert_int_equal(tobi_world_body_matter(w, 0, NULL), TOBI_INVALID);
+        for (int held = 0; held < 2; held++) {
+            tobi_solid_def solid = tobi_default_solid_def();
+            tobi_fill_def part = tobi_default_fill_def();
+            solid.name = held ? "keel" : "other";
+            solid.clamped_to = held ? "plate,body" : "body_2";
+            memcpy(part.box_min, (double[3]){ 1.5, 1, 0.5 }, sizeof part.box_min);
+            memcpy(part.box_max, (double[3]){ 2.5, 2, 1.2 }, sizeof part.box_max);
+            OK(tobi_world_add_solid(w, &solid, &part, 1, &err));
+            OK(tobi_world_body_matter(w, 0, &m));
+            assert_int_equal(m.solids, held);
+            assert_true((m.draught > 0) == (wet && !held));
+        }
         joint.name = "pin";
         joint.body = "body";
         joint.axis[1] = 1;
