@@ -265,12 +265,18 @@ int tobi_motion_is_rigid(const tobi_motion *motion)
     return motion->kind != KIND_SCRIPT || tobi_script_is_rigid(motion->script);
 }
 
+const tobi_waves *tobi_motion_waves(const tobi_motion *motion)
+{
+    if (motion->kind == KIND_PISTON || motion->kind == KIND_FLAP) return motion->waves;
+    const tobi_waves *waves = NULL;
+    for (int k = 0; k < motion->parts && !waves; k++) waves = tobi_motion_waves(motion->part[k]);
+    return waves;
+}
+
 double tobi_motion_wave_depth(const tobi_motion *motion)
 {
-    if (motion->kind == KIND_PISTON || motion->kind == KIND_FLAP) return tobi_waves_depth(motion->waves);
-    double depth = 0;
-    for (int k = 0; k < motion->parts && !(depth > 0); k++) depth = tobi_motion_wave_depth(motion->part[k]);
-    return depth;
+    const tobi_waves *waves = tobi_motion_waves(motion);
+    return waves ? tobi_waves_depth(waves) : 0;
 }
 
 int tobi_motion_is_plain(const tobi_motion *motion)

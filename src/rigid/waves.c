@@ -238,6 +238,13 @@ tobi_status tobi_waves_create(const tobi_wave_maker_def *def, tobi_waves **out, 
 
 double tobi_waves_depth(const tobi_waves *w) { return w->def.depth; }
 
+double tobi_waves_sudden(const tobi_waves *w)
+{
+    const tobi_wave_maker_def *d = &w->def;
+    const double period = d->height > 0 ? d->period : d->significant_height > 0 ? d->peak_period : 0;
+    return d->ramp < 0.5*period ? period : 0;
+}
+
 void tobi_waves_free(tobi_waves *w)
 {
     if (!w) return;

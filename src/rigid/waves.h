@@ -30,6 +30,11 @@ int tobi_waves_absorption(const tobi_waves *waves, tobi_absorption *out);
 /* The piston of a motion or of one of its parts that absorbs, and where its waves go (unit vector); NULL. */
 const tobi_waves *tobi_motion_absorber(const tobi_motion *motion, double direction[3]);
 
+/* s: the period, for irregular waves that of the peak, if the strokes do not rise over half of it or more; 0:
+   they do, or it is a solitary wave, which rises by itself. */
+double tobi_waves_sudden(const tobi_waves *waves);
+/* The waves of a piston or flap, or of one among the parts of the motion; NULL. */
+const tobi_waves *tobi_motion_waves(const tobi_motion *motion);
 /* m: the depth that a piston or flap, or one among the parts of the motion, is made for; 0: there is none. */
 double tobi_motion_wave_depth(const tobi_motion *motion);
 /* 1: no part of the motion is a script, so that it may be asked for any time in any order. */

@@ -2,6 +2,7 @@
    taken from the domain, so that what they leave is less. */
 #include "world/openings.h"
 #include "base/error.h"
+#include <math.h>
 #include <stdio.h>
 
 static double measure_domain(const tobi_system *s)
@@ -38,6 +39,39 @@ tobi_status tobi_openings_check_room(const tobi_world *w, tobi_error *err)
 
 /* Share of the domain from which liquid leaves no room for a free surface, but in the buffers. */
 static const double FULL = 0.8;
+/* Particles beside an inlet that a lattice may leave there by rounding. */
+enum { FEW = 4 };
+
+/* How many particles lie beside or behind the place that is free behind the buffer of an inlet. */
+static int64_t count_beside(const tobi_system *s, const tobi_opening *o)
+{
+    const double far = -TOBI_OPENING_BEHIND*o->depth, near = 1.5*s->smoothing.spacing;
+    int64_t count = 0;
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        double at[3];
+        tobi_opening_locate(o, &s->particles.position[i].x, at);
+        if (at[0] > -o->depth || at[0] < far - near) continue;
+        const double beside = o->radius > 0 ? hypot(at[1], at[2]) - o->radius
+                                            : fmax(fabs(at[1]) - o->half[0], fabs(at[2]) - o->half[1]);
+        count += at[0] < far ? beside < 0 : beside > 0 && beside < near;
+    }
+    return count;
+}
+
+tobi_status tobi_openings_note_pools(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    char text[300];
+    for (int k = 0; k < w->sim.opening_count; k++) {
+        const tobi_opening *o = &w->sim.openings[k];
+        if (o->outlet || count_beside(s, o) < FEW) continue;
+        snprintf(text, sizeof text, "lies in liquid: behind its buffer a hole is left free, %.3g m deep, and "
+                 "the liquid beside it falls in at the start; put a body around the hole, or the inlet above "
+                 "the liquid or at a side\n", (TOBI_OPENING_BEHIND - 1)*o->depth);
+        TOBI_TRY(tobi_world_add_notes(w, "inlet", o->name, text, err));
+    }
+    return TOBI_OK;
+}
 
 /* The name of an outlet without a pressure, or NULL. */
 static const char *find_free_outlet(const tobi_simulation *s)

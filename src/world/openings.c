@@ -17,8 +17,6 @@
 static const double GOLDEN = 0.6180339887498949;
 /* s: what a new particle's velocity is the mean of. */
 static const double SOON = 1e-6;
-/* Buffers: how far behind an inlet regions are cut out. */
-static const double BEHIND = 3;
 
 static tobi_status refuse(const tobi_opening *o, const char *key, const char *why, tobi_error *err)
 {
@@ -374,7 +372,7 @@ int tobi_openings_cover(const tobi_simulation *s, const double x[3])
         double at[3];
         tobi_opening_locate(o, x, at);
         if (!tobi_opening_faces(o, at)) continue;
-        if (!o->outlet && at[0] < 0 && at[0] >= -BEHIND*o->depth) return 1;
+        if (!o->outlet && at[0] < 0 && at[0] >= -TOBI_OPENING_BEHIND*o->depth) return 1;
     }
     return 0;
 }

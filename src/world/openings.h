@@ -23,6 +23,10 @@ tobi_status tobi_openings_choose(tobi_world *w, tobi_opening_wants wants, const 
 tobi_status tobi_openings_give(tobi_world *w, tobi_error *err);
 /* How far beyond its plane an outlet keeps particles, m. */
 double tobi_outlet_depth(const tobi_opening *o, const tobi_smoothing_constants *c);
+/* Depths of its buffer: how far behind an inlet regions are cut out. */
+#define TOBI_OPENING_BEHIND 3.0
+/* A note for each inlet that begins in the middle of liquid. After the fill. */
+tobi_status tobi_openings_note_pools(tobi_world *w, tobi_error *err);
 /* A note where they leave no free surface, to a method that needs one. After the fill. */
 tobi_status tobi_openings_note(tobi_world *w, tobi_error *err);
 /* The fastest inlet at its fastest place, m/s. */

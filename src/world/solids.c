@@ -164,6 +164,30 @@ tobi_status tobi_world_note_liquids(tobi_world *w, tobi_error *err)
     return note_slip(w, err);
 }
 
+/* Whether the solid meets another one that it is not bonded to and that rubs. */
+static int meets_solids(const tobi_system *s, int solid)
+{
+    int meets = 0;
+    for (int k = 0; k < s->solid_count; k++)
+        meets |= k != solid && s->solids[k].def.model != TOBI_LIQUID &&
+                 !(s->solids[k].def.bonded && s->solids[solid].def.bonded);
+    return meets;
+}
+
+tobi_status tobi_world_note_friction(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *s = tobi_world_solids(w);
+    const tobi_solid_def usual = tobi_default_solid_def();
+    static const char text[] = "its surface_friction does nothing, as there is no solid that it is not "
+                               "bonded to; of bodies their friction_coefficient counts, of sides "
+                               "domain.friction\n";
+    for (int k = 0; s && k < s->solid_count; k++)
+        if (s->solids[k].def.model != TOBI_LIQUID && !meets_solids(s, k) &&
+            s->solids[k].def.surface_friction != usual.surface_friction)
+            TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[k].name, text, err));
+    return TOBI_OK;
+}
+
 /* How far a body reaches into the domain from a side, m. */
 static double find_reach(const tobi_box *box, const tobi_body *b, int axis, int upper)
 {

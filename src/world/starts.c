@@ -3,6 +3,7 @@
    motions that jump later are not found. */
 #include "base/error.h"
 #include "geom/vec3.h"
+#include "rigid/waves.h"
 #include "sph/stages.h"
 #include "world/world.h"
 #include <math.h>
@@ -46,6 +47,8 @@ static tobi_status note_jerk(tobi_world *w, tobi_body *b, tobi_error *err)
     pressing += 2*find_normal_speed(b);
     const double speed = 2*after - twice;            /* at once: an acceleration adds to the means */
     if (b->rigid.kind != TOBI_PRESCRIBED || w->system[0].start_speed > 0) return TOBI_OK;
+    /* Of wave makers stroke.c tells more. */
+    if (b->motion == tobi_motion_positions && tobi_motion_waves(b->motion_user)) return TOBI_OK;
     if (!(pressing > fmax(JERK*sqrt(2*w->system[0].start_head), JERK*after))) return TOBI_OK;
     snprintf(text, sizeof text, "sets off at %.3g m/s: the force of the first step is an impulse over "
              "the time step; let the motion begin at rest\n", speed);

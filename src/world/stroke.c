@@ -98,6 +98,17 @@ static tobi_status note_depth(tobi_world *w, const tobi_body *b, tobi_error *err
     return tobi_world_add_notes(w, "body", b->name, text, err);
 }
 
+/* The first wave of a sudden start is not of the kind that is asked for, and goes ahead of the others. */
+static tobi_status note_start(tobi_world *w, const tobi_body *b, tobi_error *err)
+{
+    const double period = tobi_waves_sudden(tobi_motion_waves(b->motion_user));
+    char text[240];
+    if (!(period > 0)) return TOBI_OK;
+    snprintf(text, sizeof text, "its waves begin at full height: the sudden start sends a shock ahead of "
+             "them; a ramp of one or two periods, %.3g to %.3g s, makes them rise\n", period, 2*period);
+    return tobi_world_add_notes(w, "body", b->name, text, err);
+}
+
 tobi_status tobi_world_note_makers(tobi_world *w, tobi_error *err)
 {
     if (w->system[0].method->solids) return TOBI_OK;
@@ -106,6 +117,7 @@ tobi_status tobi_world_note_makers(tobi_world *w, tobi_error *err)
         if (!(wave_depth(&w->sim.bodies[k]) > 0)) continue;
         TOBI_TRY(note_method(w, &w->sim.bodies[k], err));
         TOBI_TRY(note_depth(w, &w->sim.bodies[k], err));
+        TOBI_TRY(note_start(w, &w->sim.bodies[k], err));
     }
     return TOBI_OK;
 }

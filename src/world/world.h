@@ -111,6 +111,8 @@ tobi_status tobi_world_find_clamps(tobi_world *w, tobi_error *err);
 tobi_status tobi_world_start_clamps(tobi_world *w, tobi_error *err);
 /* Adds a note for each stationary solid that is too light to clamp what is bonded to it. */
 tobi_status tobi_world_note_clamps(tobi_world *w, tobi_error *err);
+/* Adds a note for each solid whose surface_friction was changed and that meets no solid. */
+tobi_status tobi_world_note_friction(tobi_world *w, tobi_error *err);
 /* Adds a note for each solid that is a liquid, which the SPH methods compute better. */
 tobi_status tobi_world_note_liquids(tobi_world *w, tobi_error *err);
 /* Adds a note for each body that sets off at once in a liquid at rest and each fill of liquid that begins

@@ -134,6 +134,74 @@ static void a_jet_is_told(void **state)
     assert_int_equal(count_in_pool(NULL, 0.05, 0.2, &inlet, "'pipe': lets liquid in at up to 6"), 1);
 }
 
+/* Below the level its buffer is a hole that the pool falls into. */
+static void an_inlet_in_a_pool_is_told(void **state)
+{
+    (void)state;
+    for (int deep = 0; deep < 2; deep++) {
+        tobi_inlet_def inlet = tobi_default_inlet_def();
+        inlet.name = "pipe";
+        memcpy(inlet.centre, (double[3]){ 0.5, 0.5, 0.5 }, sizeof inlet.centre);
+        memcpy(inlet.normal, (double[3]){ 1, 0, 0 }, sizeof inlet.normal);
+        inlet.radius = 0.1;
+        inlet.flow_rate = 0.01;
+        assert_int_equal(count_in_pool(NULL, 0.05, deep ? 0.7 : 0.3, &inlet, "'pipe': lies in liquid"), deep);
+    }
+}
+
+static int count_in_scene(const char *scene, const char *text)
+{
+    tobi_world *w;
+    int found = 0;
+    OK(start_scene(scene, &w, &err));
+    for (int k = 0; tobi_world_note(w, k); k++) found += strstr(tobi_world_note(w, k), text) != NULL;
+    tobi_world_destroy(w);
+    return found;
+}
+
+static void friction_without_a_partner_is_told(void **state)
+{
+    (void)state;
+    static const struct { const char *own, *other; int told; } cases[] = {
+        { "\"surface_friction\": 0.5", NULL, 1 }, { "\"surface_friction\": 0.3", NULL, 0 },
+        { "\"surface_friction\": 0.5", "\"bonded\": true", 1 },
+        { "\"surface_friction\": 0.5", "\"bonded\": false", 0 },
+        { "\"surface_friction\": 0.5, \"bonded\": false", "\"model\": \"liquid\"", 1 },
+        { "\"surface_friction\": 0.5, \"bonded\": false", "\"bonded\": true", 0 } };
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        char text[1000], other[300] = "";
+        if (cases[k].other)
+            snprintf(other, sizeof other, ", { \"name\": \"b\", %s, \"fill\": [ { \"box\": { \"min\": "
+                     "[0.6, 0], \"max\": [0.8, 0.2] } } ] }", cases[k].other);
+        snprintf(text, sizeof text, "{ \"method\": \"mlsmpm\", \"dimension\": 2, "
+                 "\"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.1, \"end_time\": 1, "
+                 "\"solids\": [ { \"name\": \"a\", %s, \"fill\": [ { \"box\": { \"min\": [0.2, 0], "
+                 "\"max\": [0.4, 0.2] } } ] }%s ] }", cases[k].own, other);
+        assert_int_equal(count_in_scene(text, "'a': its surface_friction does nothing"), cases[k].told);
+    }
+}
+
+static void a_sudden_wave_maker_is_told(void **state)
+{
+    (void)state;
+    static const struct { const char *waves; int told; } cases[] = {
+        { "\"regular\": { \"height\": 0.04, \"period\": 1 }", 1 },
+        { "\"regular\": { \"height\": 0.04, \"period\": 1 }, \"ramp\": 1", 0 },
+        { "\"solitary\": { \"height\": 0.04 }", 0 } };
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        char text[1000];
+        snprintf(text, sizeof text, "{ \"method\": \"isph\", \"dimension\": 2, "
+                 "\"domain\": { \"min\": [-0.1, 0], \"max\": [2, 0.6] }, \"spacing\": 0.05, "
+                 "\"end_time\": 1, \"gravity\": [0, -9.81], "
+                 "\"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"box\": { \"min\": [0.1, 0], "
+                 "\"max\": [2, 0.3] } } ] } ], "
+                 "\"bodies\": [ { \"name\": \"board\", \"box\": { \"min\": [0, 0], \"max\": [0.1, 0.6] }, "
+                 "\"motion\": { \"piston\": { \"depth\": 0.3, %s } } } ] }", cases[k].waves);
+        assert_int_equal(count_in_scene(text, "'board': its waves begin at full height"), cases[k].told);
+        assert_int_equal(count_in_scene(text, "sets off at"), 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -141,6 +209,9 @@ int main(void)
         cmocka_unit_test(a_tank_is_not),
         cmocka_unit_test(a_rough_surface_is_told),
         cmocka_unit_test(a_jet_is_told),
+        cmocka_unit_test(an_inlet_in_a_pool_is_told),
+        cmocka_unit_test(friction_without_a_partner_is_told),
+        cmocka_unit_test(a_sudden_wave_maker_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
