@@ -70,6 +70,9 @@ char *near_scene(const char *path);
 /* The same for the folder of a run. */
 char *near_run(const char *path);
 /* Says that there is no run in dir, and which one may be meant. Returns EXIT_ERROR. */
+/* A path as a shell takes it: itself, or between quotes in room. One that is too long stays as it is. */
+enum { SHELL_WORD = 1000 };
+const char *shell_word(const char *text, char room[SHELL_WORD]);
 int complain_run(const char *dir, const char *what);
 
 /* new.c: whether the arguments of `tobiuo new` name a family of scenes; its list; the scene. */

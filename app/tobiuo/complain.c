@@ -3,6 +3,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 int complain(const char *format, ...)
 {
@@ -37,4 +38,20 @@ int complain_run(const char *dir, const char *what)
     complain("%s: %s%s%s%s", dir, what, near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
     free(near);
     return EXIT_ERROR;
+}
+
+const char *shell_word(const char *text, char room[SHELL_WORD])
+{
+    const char *safe = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,:@%=";
+    size_t used = 1;
+    const char *c = text;
+    while (*c && ((unsigned char)*c >= 0x80 || strchr(safe, *c))) c++;
+    if (*text && !*c) return text;
+    room[0] = '\'';
+    for (c = text; *c; c++) {
+        if (used + 6 > SHELL_WORD) return text;
+        used += (size_t)sprintf(room + used, *c == '\'' ? "'\\''" : "%c", *c);
+    }
+    strcpy(room + used, "'");
+    return room;
 }

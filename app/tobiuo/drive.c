@@ -63,7 +63,8 @@ static void print_end(const drive_options *o, watch *w, const tobi_world *world,
     if (o->quiet) return;
     printf("%s at t = %.9g s after %lld steps in %s; results in %s\n", done ? "done" : "stopped",
            tobi_world_time(world), (long long)w->steps, duration_text(wall, text), o->dir);
-    if (!done) printf("go on with: tobiuo resume %s\n", o->dir);
+    char quoted[SHELL_WORD];
+    if (!done) printf("go on with: tobiuo resume %s\n", shell_word(o->dir, quoted));
 }
 
 static int end_run(const tobi_world *world, tobi_run *run, const drive_options *o, watch *w,

@@ -39,9 +39,10 @@ static int complain_nowhere(const char *path, const char *file)
     if (stat(file, &st) == 0) return 0;
     char *resolved = join(path, "/resolved.json");
     const int results = access(resolved, F_OK) == 0;
+    char quoted[SHELL_WORD];
     if (results)
         complain("%s: holds the results of a run, and no scene.json; \"tobiuo resume %s\" goes on with that "
-                 "run, and its scene is %s", path, path, resolved);
+                 "run, and its scene is %s", path, shell_word(path, quoted), resolved);
     free(resolved);
     if (results) return 1;
     char *near = stat(path, &st) == 0 ? NULL : near_scene(path);

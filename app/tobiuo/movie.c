@@ -337,6 +337,15 @@ static int make(const movie_options *o, const char *at, const char *out)
     return code;
 }
 
+/* Neither a table nor a picture: no run that a movie could be of. */
+static int is_run(const movie_options *o)
+{
+    char *history = NULL;
+    const int there = asprintf(&history, "%s/history.csv", o->dir) >= 0 && access(history, F_OK) == 0;
+    free(history);
+    return there || is_picture(o->dir, o->view, 0);
+}
+
 /* With what is there, if the rest cannot be drawn: somebody may have kept the pictures alone. */
 static int complete_and_make(const movie_options *o, const char *out)
 {
@@ -409,7 +418,7 @@ int tobiuo_movie(int argc, char **argv)
     if (asprintf(&own, "%s/movie%s%s.mp4", o.dir, o.view ? "_" : "", o.view ? o.view : "") < 0)
         return complain("out of memory");
     const char *out = o.out ? o.out : own;
-    int code = access(o.dir, F_OK) == 0 ? 0 : complain_run(o.dir, "there is no run");
+    int code = is_run(&o) ? 0 : complain_run(o.dir, "there is no run (no history.csv)");
     if (code == 0 && !is_png(out)) code = check_speed(&o);
     if (code == 0) code = prepare_movie(out, o.force);
     if (code == 0 && !is_png(out)) code = check_encoder();

@@ -322,7 +322,10 @@ int write_family(int argc, char **argv)
     char *own = dir ? NULL : name_choice(&c);
     if (!dir) dir = own;
     code = write_scene(&c, dir);
-    if (!code) printf("%s/scene.json is a scene of %s. Run it: tobiuo run %s\n", dir, c.family->name, dir);
+    char quoted[SHELL_WORD];
+    if (!code)
+        printf("%s/scene.json is a scene of %s. Run it: tobiuo run %s\n", dir, c.family->name,
+               shell_word(dir, quoted));
     free(own);
     return code;
 }

@@ -36,6 +36,7 @@ error_t parse_argument(struct argp_state *state, int key, const char *value, con
         if (*argument && strchr(value, '='))
             argp_error(state, "one %s only; a value is changed by --set %s", name, value);
         if (*argument) argp_error(state, "one %s only", name);
+        if (!*value) argp_error(state, "%s is empty", name);
         *argument = value;
         return 0;
     case ARGP_KEY_END:

@@ -151,7 +151,9 @@ static int run_scene(tobi_scene *scene, const run_options *o)
         code = complain("--surface: a run in 2-D has no surface");
     if (code == 0 && o->movie) code = handle_movies(scene, o, dir, PREPARE);
     const int no_movie = code == 0 && o->movie ? check_encoder() : 0;
-    if (no_movie) complain("the run goes on and keeps its pictures; later: tobiuo movie %s", dir);
+    char quoted[SHELL_WORD];
+    if (no_movie)
+        complain("the run goes on and keeps its pictures; later: tobiuo movie %s", shell_word(dir, quoted));
     if (code == 0) code = record(scene, world, o, dir, &size);
     if ((code == 0 || code == EXIT_UNWRITTEN) && o->movie) {      /* of the pictures that there are */
         const int made = no_movie ? no_movie : handle_movies(scene, o, dir, MAKE);

@@ -214,7 +214,10 @@ int tobiuo_new(int argc, char **argv)
     }
     *strrchr(path, '/') = '\0';
     const int code = copy_whole(path, dir);
-    if (!code) printf("%s is a copy of %s. Change %s/scene.json, then: tobiuo run %s\n", dir, name, dir, dir);
+    char quoted[SHELL_WORD];
+    if (!code)
+        printf("%s is a copy of %s. Change %s/scene.json, then: tobiuo run %s\n", dir, name, dir,
+               shell_word(dir, quoted));
     free(path);
     return code;
 }

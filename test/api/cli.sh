@@ -69,6 +69,10 @@ expect 2 "not a positive number" run tank.json --spacing -1
 expect 2 "--threads" run tank.json --threads many
 expect 2 "PATH=VALUE" run tank.json --set spacing
 expect 2 "which DIR?" resume
+expect 2 "DIR is empty" resume ""
+expect 2 "SCENE is empty" run ""
+expect 0 "" new dam_break "a folder"
+check "the command that it names can be pasted" grep -qF "tobiuo run 'a folder'" out.txt
 expect 0 "" describe dfsph
 check "describe names the unit" grep -q "default" out.txt
 expect 1 "nothing is called 'magic'" describe magic

@@ -17,6 +17,7 @@ expect 2 "is not a positive number" movie nowhere --slow 0
 expect 2 "its name ends in .mp4, .webm, .webp or .gif" movie nowhere --out film.avi
 expect 2 "its name ends in .mp4, .webm, .webp or .gif" run drop.json --movie film
 expect 1 "there is no run" movie nowhere
+expect 1 "drop.json: there is no run (no history.csv)" movie drop.json
 expect 0 "" run drop.json --out plain --quiet
 expect 0 "draws 11 pictures into plain/frames" movie plain --out plain.png
 expect 1 "the scene of plain has no view 'q'" movie plain --view q --out q.png
