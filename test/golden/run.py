@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Short scenes whose results are known to the last bit: scenes *.json, results in hashes.csv.
 
-usage: run.py --tobiuo PROGRAM [SCENE...]
+usage: run.py --tobiuo PROGRAM [--every] [SCENE...]
        run.py --tobiuo PROGRAM --write        writes hashes.csv anew
 
-Each scene runs with the kernels of x86-64-v2, v3 and v4 (on older processors the best there is) times 1, 2
-and 4 threads, once in two parts (run, then resume), and once as on a processor without fused multiply-add,
-where the C library computes sines and powers in another way. All must agree with the table in two numbers:
+Each scene runs with the kernels of x86-64-v2, v3 and v4 (on older processors the best there is), each with
+another number of threads, once in two parts (run, then resume), and once as on a processor without fused
+multiply-add, where the C library computes sines and powers in another way. --every: each kernel set with 1, 2 and
+4 threads. All must agree with the table in two numbers:
 `state`, the state_hash of summary.json, and `files`, the names and bytes of all files but summary.json
 (times), resolved.json (paths) and checkpoints. `added` counts when scenes came: pages of docs/validation that
 are older than a scene do not know it.
@@ -21,9 +22,9 @@ OLD_PROCESSOR = "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F,-AVX2_Usable,-FMA_Us
 APART = {"summary.json", "resolved.json", "inputs.json", "checkpoints"}
 
 
-def variants():
-    for level in LEVELS:
-        for threads in THREADS:
+def variants(every=False):
+    for level, own in zip(LEVELS, THREADS):
+        for threads in THREADS if every else [own]:
             yield f"v{level}, threads {threads}", {"TOBIUO_ISA": str(level)}, threads, False
     yield "resumed", {}, 2, True
     yield "processor without FMA", {"TOBIUO_ISA": "2", "GLIBC_TUNABLES": OLD_PROCESSOR}, 2, False
@@ -94,6 +95,7 @@ def compare(scene, known, results):
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("--tobiuo", required=True)
+    parser.add_argument("--every", action="store_true")
     parser.add_argument("--write", action="store_true")
     parser.add_argument("scenes", nargs="*")
     options = parser.parse_args()
@@ -106,7 +108,7 @@ def main():
         faults += [f"{name}: there is no such scene" for name in table if name not in {s.stem for s in scenes}]
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         for scene in scenes:
-            names = list(variants())
+            names = list(variants(options.every))
             results = list(zip([v[0] for v in names], pool.map(lambda v, s=scene: run(program, s, v), names)))
             found[scene.stem] = results[0][1]
             faults += compare(scene, found[scene.stem] if options.write else table.get(scene.stem), results)
@@ -116,7 +118,7 @@ def main():
         return 1
     if options.write:
         write_table(found)
-    print(f"{len(scenes)} scenes, {len(list(variants()))} runs of each, all alike")
+    print(f"{len(scenes)} scenes, {len(list(variants(options.every)))} runs of each, all alike")
     return 0
 
 
