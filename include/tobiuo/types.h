@@ -192,6 +192,7 @@ typedef struct tobi_body_def {
     double rotation_angle;      /* degrees                                                           */
     double translation[3];      /* m; last                                                           */
     int    vessel;              /* 1: a vessel; a mesh without walls of its own is its inner surface */
+    int    sealed;              /* 1: no liquid reaches the gap where it lies on a side or a body    */
     double wall_thickness;      /* m, outside of that surface; 0 = its own walls, or else 2 spacings */
     double open_side[3];        /* direction of the flat side that a vessel has not; 0 = it has all  */
     double density;             /* kg/m3                                                             */

@@ -46,6 +46,7 @@ typedef struct tobi_body {
     double middle[3];                /* m, of the volume about that centre, in rest axes       */
     double density;                  /* kg/m3                                                  */
     int vessel;                      /* 1: liquid is filled into it                            */
+    int sealed;                      /* 1: no liquid is in its gaps                            */
     int blade;                       /* 1: its edge cuts solids                                */
     double edge_resistance;          /* J/m2 of new surface                                    */
     tobi_edge *edge;                 /* of a blade: about the centre of mass, in rest axes     */

@@ -6,6 +6,7 @@
 #include "scene/spelling.h"
 #include "tobiuo/scene.h"
 #include "base/param.h"
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -428,7 +429,9 @@ static void report_unknown(const pass *p, const char *prefix, const tobi_place *
 static void bind_row(pass *p, const tobi_param *row, json_t *value, const tobi_place *place)
 {
     int64_t before = tobi_report_total(p->binder->source->report);
-    uint64_t bit = UINT64_C(1) << (row - p->table->rows);
+    const int64_t number = row - p->table->rows;
+    const tobi_rows bit = (tobi_rows)1 << number;
+    assert(number < 8*(int64_t)sizeof bit);
     bind_value(&(slot){ p->binder, row, place, value, p->def + row->offset });
     p->bound.given |= bit;
     if (tobi_report_total(p->binder->source->report) == before) p->bound.good |= bit;
@@ -562,7 +565,7 @@ tobi_bound tobi_bind(const tobi_binder *binder, const tobi_param_table *table, j
     return p.bound;
 }
 
-int tobi_bind_has(const tobi_param_table *table, uint64_t rows, const char *key)
+int tobi_bind_has(const tobi_param_table *table, tobi_rows rows, const char *key)
 {
     for (const tobi_param *row = table->rows; row->key; row++)
         if (strcmp(row->key, key) == 0) return rows >> (row - table->rows) & 1;

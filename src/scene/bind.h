@@ -19,9 +19,10 @@ typedef struct tobi_binder {
 } tobi_binder;
 
 /* What an object gives: one bit per row of the table. */
+typedef unsigned __int128 tobi_rows;
 typedef struct tobi_bound {
-    uint64_t given;            /* its key is there       */
-    uint64_t good;             /* and its value is right */
+    tobi_rows given;           /* its key is there       */
+    tobi_rows good;             /* and its value is right */
 } tobi_bound;
 
 /* Binds object to def, which must hold the defaults. Keys listed in also (ended by NULL) belong to
@@ -30,7 +31,7 @@ typedef struct tobi_bound {
 tobi_bound tobi_bind(const tobi_binder *binder, const tobi_param_table *table, json_t *object,
                    const tobi_place *place, const char *const *also, void *def);
 /* Whether the row `key` is among rows, which is one half of a tobi_bound. */
-int tobi_bind_has(const tobi_param_table *table, uint64_t rows, const char *key);
+int tobi_bind_has(const tobi_param_table *table, tobi_rows rows, const char *key);
 
 /* The allowed values of a row in words: "2 to 4 spacings", "greater than 0 m", "slip or no-slip".
  */

@@ -302,7 +302,7 @@ static void check_planes(const tobi_scene *scene, tobi_source *source)
     tobi_place planes = { &root, "planes", 0 };
     for (int i = 0; i < scene->plane_count && !tobi_report_full(source->report); i++) {
         const tobi_plane_def *plane = &scene->planes[i];
-        const uint64_t good = scene->planes_bound[i].good;
+        const tobi_rows good = scene->planes_bound[i].good;
         tobi_place entry = { &planes, NULL, (size_t)i }, point = { &entry, "point", 0 },
                    normal = { &entry, "normal", 0 };
         const double *n = plane->normal;

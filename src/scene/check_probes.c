@@ -60,7 +60,7 @@ static void check_keys(const one *o, tobi_bound bound)
     }
 }
 
-static void check_sizes(const one *o, uint64_t given)
+static void check_sizes(const one *o, tobi_rows given)
 {
     const tobi_probe_def *d = o->def;
     const int flat = o->scene->world.dimension == 2;

@@ -114,7 +114,7 @@ static void check_fill(const tobi_scene *scene, tobi_source *source, const tobi_
 {
     static const char *const of_mesh[] = { "scale", "translation", "rotation.axis", "rotation.angle" };
     const tobi_param_table *t = &tobi_fill_table;
-    uint64_t given = fill->bound.given;
+    const tobi_rows given = fill->bound.given;
     tobi_place mesh = { place, "mesh", 0 };
     tobi_place rotation = { place, "rotation", 0 }, axis = { &rotation, "axis", 0 };
     int has_box = tobi_bind_has(t, given, "box.min") || tobi_bind_has(t, given, "box.max");

@@ -48,8 +48,10 @@ static int64_t count_beside(const tobi_system *s, const tobi_opening *o)
     const double far = -TOBI_OPENING_BEHIND*o->depth, near = 1.5*s->smoothing.spacing;
     int64_t count = 0;
     for (int64_t i = 0; i < s->particles.count; i++) {
+        const tobi_double3 *p = &s->particles.position[i];
+        const double x[3] = { p->x, p->y, p->z };
         double at[3];
-        tobi_opening_locate(o, &s->particles.position[i].x, at);
+        tobi_opening_locate(o, x, at);
         if (at[0] > -o->depth || at[0] < far - near) continue;
         const double beside = o->radius > 0 ? hypot(at[1], at[2]) - o->radius
                                             : fmax(fabs(at[1]) - o->half[0], fabs(at[2]) - o->half[1]);

@@ -67,6 +67,9 @@ static const tobi_param body_rows[] = {
     { .key = "friction", CHOICE("slip|no-slip", 2), AT(tobi_body_def, friction),
       .doc = "Whether the fluid slips along the body or sticks to it, rubbing as a turbulent layer where the "
              "spacing is too coarse for the layer at the surface." },
+    { .key = "sealed", BOOL, AT(tobi_body_def, sealed),
+      .doc = "Whether no liquid reaches the gap where the body lies on a side of the domain or another "
+             "body: then nothing presses it there. Else the gap has the pressure around it." },
     { .key = "contact_angle", REAL, AT(tobi_body_def, contact_angle), .def = { 90 },
       RANGE(10, 170), .unit = "degrees",
       .doc = "Angle, measured in the liquid, at which a surface with tension meets the body." },

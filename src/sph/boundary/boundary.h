@@ -17,6 +17,16 @@ tobi_status tobi_boundary_measure(struct tobi_system *s, tobi_error *err);
 /* Marks with TOBI_WET_GAP the points of bodies below the level of still water that no particle sees and that
    face a side of the domain or another body within a support radius. Part of measuring. */
 void tobi_boundary_fill_gaps(struct tobi_system *s);
+/* What is nearer to x than reach (m, a support radius at most): 1 << 2a and 2 << 2a for the lower and the
+   upper side of axis a, TOBI_NEAR_BODY for another body. n: only what it points at; or NULL. Others are found
+   after tobi_boundary_find_neighbors at their present pose. */
+enum { TOBI_NEAR_BODY = 64, TOBI_NEAR_KINDS = 7 };
+int tobi_boundary_near(const struct tobi_system *s, int body, const double x[3], const double *n,
+                       double reach);
+void tobi_boundary_find_neighbors(struct tobi_system *s);
+/* 1 where a body stands on a place of a side with the inner normal n, or a gap narrower than a spacing before
+   it. */
+int tobi_boundary_covers(const struct tobi_system *s, const double x[3], const double n[3]);
 /* Replaces neighbours that lie behind a body by the particle itself in the list. */
 void tobi_boundary_cut_pairs(struct tobi_system *s);
 /* Writes particles.near_body, if there is one. After cutting pairs. */

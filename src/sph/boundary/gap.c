@@ -5,27 +5,56 @@
    higher elsewhere. Drawback: a flat body that lies close has its full buoyancy too, as if it stood on
    grains. */
 #include "sph/boundary/boundary.h"
+#include "geom/vec3.h"
 #include "sph/state.h"
 
-static int faces_side(const tobi_system *s, const double x[3], const double n[3])
+static int sides_near(const tobi_system *s, const double x[3], const double *n, double reach)
 {
+    int near = 0;
     for (int a = 0; a < s->box.dimension; a++) {
         if (s->box.periodic[a]) continue;
-        if (n[a] < -0.5 && x[a] < s->smoothing.h) return 1;
-        if (n[a] > 0.5 && s->box.size[a] - x[a] < s->smoothing.h) return 1;
+        if ((!n || n[a] < -0.5) && x[a] < reach) near |= 1 << 2*a;
+        if ((!n || n[a] > 0.5) && s->box.size[a] - x[a] < reach) near |= 2 << 2*a;
     }
-    return 0;
+    return near;
 }
 
-static int faces_body(const tobi_system *s, int body, const double x[3], const double n[3])
+static int body_near(const tobi_system *s, int body, const double x[3], const double *n, double reach)
 {
     tobi_tree_walk walk = {0, 0};
     for (int k; (k = tobi_body_tree_next(&sph_of(s)->links.tree, x, &walk)) >= 0;) {
         tobi_bvh_hit hit;
-        if (k == body || !tobi_bvh_closest(s->sim->bodies[k].bvh, x, s->smoothing.h, &hit)) continue;
-        if (n[0]*hit.normal[0] + n[1]*hit.normal[1] + n[2]*hit.normal[2] < -0.5) return 1;
+        if (k == body || !tobi_bvh_closest(s->sim->bodies[k].bvh, x, reach, &hit)) continue;
+        if (!n || n[0]*hit.normal[0] + n[1]*hit.normal[1] + n[2]*hit.normal[2] < -0.5) return TOBI_NEAR_BODY;
     }
     return 0;
+}
+
+int tobi_boundary_near(const tobi_system *s, int body, const double x[3], const double *n, double reach)
+{
+    return sides_near(s, x, n, reach) | body_near(s, body, x, n, reach);
+}
+
+int tobi_boundary_covers(const tobi_system *s, const double x[3], const double n[3])
+{
+    const double reach = s->smoothing.spacing;
+    tobi_tree_walk walk = {0, 0};
+    for (int k; (k = tobi_body_tree_next(&sph_of(s)->links.tree, x, &walk)) >= 0;) {
+        tobi_bvh_hit hit;
+        double aside[3];
+        if (!tobi_bvh_closest(s->sim->bodies[k].bvh, x, reach, &hit)) continue;
+        for (int a = 0; a < 3; a++) aside[a] = x[a] - hit.point[a];
+        const double away = vec3_dot(aside, hit.normal);
+        for (int a = 0; a < 3; a++) aside[a] -= away*hit.normal[a];
+        if (vec3_dot(n, hit.normal) < -0.5 && vec3_dot(aside, aside) < 1e-6*reach*reach) return 1;
+    }
+    return 0;
+}
+
+void tobi_boundary_find_neighbors(tobi_system *s)
+{
+    tobi_body_tree_build(&sph_of(s)->links.tree, s->sim->bodies, s->sim->body_count, s->smoothing.h,
+                         s->box.dimension);
 }
 
 /* The body that the q-th of all points belongs to. */
@@ -54,9 +83,10 @@ static void wet_range(const void *view, int64_t begin, int64_t end, double *tota
         const int64_t q = all - bins[k].item;
         const double *x = b->point[q], *n = b->normal[q];
         if (state->links.first[k] == state->links.first[k + 1]) continue;
-        if (b->covered[q] >= TOBI_COVERED || b->wet[q] == TOBI_BURIED || b->is_absent) continue;
+        if (b->covered[q] >= TOBI_COVERED || b->wet[q] == TOBI_BURIED || b->is_absent || b->sealed)
+            continue;
         if (!(tobi_reference_pressure(&state->reference, x) > 0)) continue;
-        if (faces_side(s, x, n) || faces_body(s, k, x, n)) b->wet[q] = TOBI_WET_GAP;
+        if (tobi_boundary_near(s, k, x, n, s->smoothing.h)) b->wet[q] = TOBI_WET_GAP;
     }
 }
 
@@ -66,6 +96,6 @@ void tobi_boundary_fill_gaps(tobi_system *s)
     tobi_boundary_links *n = &state->links;
     const int bodies = s->sim->body_count;
     if (!(state->reference.push > 0)) return;
-    tobi_body_tree_build(&n->tree, s->sim->bodies, bodies, s->smoothing.h, s->box.dimension);
+    tobi_boundary_find_neighbors(s);
     tobi_launch(&s->sim->exec, TOBI_HOST(wet_range, 0, 0), s, 0, n->bins[bodies].item, NULL);
 }

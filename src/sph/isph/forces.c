@@ -5,6 +5,7 @@
    only. */
 #include "sph/boundary/boundary.h"
 #include "sph/isph/forces.h"
+#include "sph/isph/gaps.h"
 #include "sph/state.h"
 #include "geom/matrix6.h"
 #include "geom/vec3.h"
@@ -20,6 +21,7 @@ typedef struct body_points {
     const isph_view *v;
     int body;
     isph_point *point;               /* of the body                                                 */
+    const isph_body *all;            /* bodies                                                      */
     int holds;                       /* 1: a body holds a solid, and points know their share `held` */
     double scale;                    /* m3, on W                                                    */
     double share[TOBI_MAX_FLUIDS];   /* 1: density of each fluid over that of the first             */
@@ -196,7 +198,11 @@ static void add_coupling(void *user, tobi_facing_points *l)
     for (int i = 0; i < l->count; i++) {
         const int32_t k = tobi_facing_point(l, i)->number;
         const double w = g->q.scale*l->weight[i], all = g->q.point[k].weight;
-        if (w > 0 && all < INFINITY) add_push(b, k, -b->area[k]*w/all, g->coupling.f);
+        double push[6] = { 0 };
+        if (!(w > 0 && all < INFINITY)) continue;
+        add_push(b, k, -b->area[k]*w/all, g->coupling.f);
+        isph_gaps_add(&g->q.all[g->q.body], b, g->q.point, k, push);
+        for (int a = 0; a < 6; a++) g->coupling.f[a] -= push[a]*w/all;
     }
 }
 
@@ -220,6 +226,57 @@ static void find_couplings(const void *view, int64_t begin, int64_t end, double 
         tobi_boundary_take_facing(u->n, l->body, x, g.q.s->smoothing.h, add_coupling, &g);
         u->m->coupling[k] = g.coupling;
     }
+}
+
+/* A particle's look at the rims of the gaps between one body and the sides. */
+typedef struct gap_sum { body_points q; double force[3]; } gap_sum;
+
+static void add_gaps(void *user, tobi_facing_points *l)
+{
+    gap_sum *g = user;
+    const isph_body *body = &g->q.all[g->q.body];
+    tobi_facing_weigh(l, &g->q.s->smoothing);
+    for (int i = 0; i < l->count; i++) {
+        const int32_t k = tobi_facing_point(l, i)->number;
+        const isph_point *p = &g->q.point[k];
+        if (p->weight < INFINITY)
+            isph_gaps_add_side(body, body_of(&g->q), p, k, g->q.scale*l->weight[i]/p->weight, g->force);
+    }
+}
+
+/* totals: force of the pressure in gaps on what closes them, as far as it comes from the particles. */
+static void sum_gaps(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const coupling_view *u = view;
+    for (int64_t k = begin; k < end; k++) {
+        const tobi_boundary_link *l = &u->n->link[k];
+        const tobi_double3 *at = &u->q->v->position[l->particle];
+        const double x[3] = { at->x, at->y, at->z }, p = u->q->v->pressure[l->particle];
+        gap_sum g = { .q = *u->q };
+        if (!u->m->body[l->body].gaps) continue;
+        g.q.body = l->body;
+        g.q.point = u->m->point + u->n->bins[l->body].item;
+        tobi_boundary_take_facing(u->n, l->body, x, g.q.s->smoothing.h, add_gaps, &g);
+        for (int a = 0; a < 3; a++) totals[a] += g.force[a]*p;
+    }
+}
+
+/* Sides under a gap feel the opposite of the body: no particle is there to press them. */
+static void load_sides(isph_solver *m, tobi_system *s)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    const body_points q = { .s = s, .v = &m->view, .all = m->body,
+                            .scale = s->smoothing.volume*s->smoothing.weight_correction };
+    const coupling_view u = { &q, m, n };
+    double t[TOBI_TOTALS] = { 0 };
+    int gaps = 0;
+    for (int k = 0; k < s->sim->body_count; k++) {
+        gaps |= m->body[k].gaps;
+        for (int a = 0; a < 3; a++) s->info.wall_force[a] -= m->body[k].gap_rest[a];
+    }
+    if (!gaps) return;
+    tobi_launch(m->exec, TOBI_HOST(sum_gaps, 3, 0), &u, 0, n->count, t);
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] -= t[a];
 }
 
 static tobi_status reserve(isph_solver *m, const tobi_boundary_links *n, int bodies, tobi_error *err)
@@ -253,14 +310,16 @@ tobi_status isph_forces_find_coupling(isph_solver *m, tobi_system *s, tobi_error
     const int bodies = s->sim->body_count;
     if (bodies == 0) return TOBI_OK;
     TOBI_TRY(reserve(m, n, bodies, err));
-    body_points q = { .s = s, .v = &m->view, .holds = find_held(m, s),
+    body_points q = { .s = s, .v = &m->view, .all = m->body, .holds = find_held(m, s),
                       .scale = c->volume*c->weight_correction };
     for (int f = 0; f < s->fluid_count; f++) q.share[f] = s->fluid[f].density/m->view.density;
+    tobi_boundary_find_neighbors(s);
     for (q.body = 0; q.body < bodies; q.body++) {
         double t[TOBI_TOTALS] = { 0 };
         q.point = m->point + n->bins[q.body].item;
         if (n->first[q.body] < n->first[q.body + 1])
             tobi_launch(m->exec, TOBI_HOST(weigh_points, 6, 0), &q, 0, body_of(&q)->point_count, t);
+        isph_gaps_find(m, s, q.body, q.point, t);
         memcpy(m->body[q.body].rest_force, t, sizeof m->body->rest_force);
     }
     const coupling_view u = { &q, m, n };
@@ -497,6 +556,7 @@ void isph_forces_load(isph_solver *m, tobi_system *s)
         for (int a = 0; a < 6; a++) f[a] = sph_of(s)->links.total[k][a] + m->body[k].rest_force[a];
         remove_added_mass(m, s, k, f);
     }
+    load_sides(m, s);
 }
 
 int64_t isph_forces_bytes(const isph_solver *m)

@@ -2,6 +2,7 @@
 #pragma once
 #include "core/system.h"
 #include "linear/multigrid.h"
+#include "sph/boundary/boundary.h"
 #include "sph/isph/view.h"
 #include "sph/kernels.h"
 
@@ -12,7 +13,14 @@ typedef struct isph_point {
     double weight, hydrostatic, distance;
     uint32_t held;                   /* share of the half space before it with a solid that the body holds, in
                                         units of 1/TOBI_COVERED                                     */
+    uint8_t gap, rim;                /* by tobi_boundary_near: what it faces in a gap, what else it is near */
 } isph_point;
+
+/* A gap between a body and a side, or other bodies: eq. (12c). */
+typedef struct isph_gap {
+    double rim;                      /* m2: area of the points around it; 0: there is no gap        */
+    double push[6];                  /* m2, m3: force and torque of a pressure of -1 in it          */
+} isph_gap;
 
 /* What a body does with pressure: in the order of its velocities, then turns. */
 typedef struct isph_body {
@@ -22,6 +30,9 @@ typedef struct isph_body {
     double added_mass[6][6];         /* kg: of the water between particles and surface              */
     double added_mass_factor[6][6];  /* 1: what of its own acceleration is left with that           */
     double mobility[6][6];           /* 1/kg: acceleration by a force on it, with that              */
+    isph_gap gap[TOBI_NEAR_KINDS];
+    int gaps;                        /* 1: it has any                                               */
+    double gap_rest[3];              /* N: of rest_force, from gaps at sides along their normals    */
 } isph_body;
 
 /* What eisph does in place of the solve. */

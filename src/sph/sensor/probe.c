@@ -1,6 +1,7 @@
 /* Pressure, level and velocity at places: averages of the particles around, each method by its own
    walls. Drawback: a probe nearer than a support to a corner has few particles to ask. */
 #include "sph/state.h"
+#include "sph/boundary/boundary.h"
 #include "sph/hydrostatic.h"
 #include "sph/sensor/around.h"
 #include "sph/sensor/probe.h"
@@ -286,6 +287,7 @@ static void press_pieces(const void *view, int64_t begin, int64_t end, double *t
             y[w->axis] = w->end ? size[w->axis] : 0;
             y[w->other] = ((double)i + 0.5)*size[w->other]/(double)w->rows;
             if (w->s->box.dimension == 3) y[along] = ((double)k + 0.5)*size[along]/(double)w->columns;
+            if (tobi_boundary_covers(w->s, y, m.normal)) continue;
             totals[0] -= measure_place(&m, y)*m.normal[w->axis];
         }
 }
@@ -325,6 +327,7 @@ static void find_extent(const void *view, int64_t begin, int64_t end, double *to
 void tobi_probe_sides(tobi_system *s, double force[3])
 {
     double low[3] = { 0 }, high[3] = { 0 };
+    tobi_boundary_find_neighbors(s);
     for (int a = 0; a < s->box.dimension; a++) {
         const extent e = { s, a };
         double t[TOBI_TOTALS];
