@@ -45,7 +45,7 @@ def fish_means(out):
 
 wing, curves = [], []
 for spacing in case.pick((0.16/22, 0.16/27), (0.004, 0.0032)):
-    out = case.run(f"wing{spacing:g}", "--spacing", spacing, "--until", case.pick(0.2, 0.3), "--set", "speed_limit=10")
+    out = case.run(f"wing{spacing:g}", "--spacing", spacing, "--until", case.pick(0.15, 0.3), "--set", "speed_limit=10")
     value, table = force(out, "wing", "x", 0.1)
     wing.append(value)
     curves.append((f"d = {1000*spacing:.3g} mm", table["time"][1:], table["mean_pressure_force_x"][1:], False))
