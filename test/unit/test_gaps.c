@@ -44,8 +44,8 @@ static tobi_body_info block_of(const tobi_world *w)
 
 static const double WIDE = 0.1, HIGH = 0.1, DEPTH = 0.3, WEIGHT = 1000*9.81;      /* m, N/m3 */
 
-/* `isph` had -196 N for 98 N, and on the floor 4 % of the weight too much. off: of the floor; that of eisph
-   is up to 4 % off without bodies (decision 51). */
+/* `isph` held the box down, and pressed the floor beneath it too. off: of the floor; that of eisph is up to
+   4 % off without bodies (decision 51). */
 static void stands(const char *method, double top, double off)
 {
     tobi_world *w = start(method, top, "");

@@ -207,3 +207,18 @@ void isph_bodies_refresh_images(isph_solver *m)
     if (m->view.last_link)
         tobi_launch(m->exec, m->kernel->isph_refresh_images, &m->view, 0, m->view.count, NULL);
 }
+
+void isph_bodies_lever(const tobi_body *b, int64_t k, double lever[6])
+{
+    double arm[3];
+    for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
+    memcpy(lever, b->normal[k], 3*sizeof *lever);
+    vec3_cross(lever + 3, arm, b->normal[k]);
+}
+
+void isph_bodies_push(const tobi_body *b, int64_t k, double push, double f[6])
+{
+    double lever[6];
+    isph_bodies_lever(b, k, lever);
+    for (int a = 0; a < 6; a++) f[a] += push*lever[a];
+}

@@ -10,3 +10,7 @@ void isph_bodies_remove_hydrostatic(tobi_system *s);
 void isph_bodies_accelerate(isph_solver *m, tobi_system *s, double dt);
 /* The images as their mirrors move now: after changes of those. */
 void isph_bodies_refresh_images(isph_solver *m);
+/* Force and torque of a push of 1 N along the normal at point k. */
+void isph_bodies_lever(const tobi_body *b, int64_t k, double lever[6]);
+/* f += those of such a push of `push` N. */
+void isph_bodies_push(const tobi_body *b, int64_t k, double push, double f[6]);

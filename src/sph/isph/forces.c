@@ -88,22 +88,6 @@ static isph_point sum_particles(const body_points *q, int64_t k)
     return sum;
 }
 
-/* Force and torque of a push of 1 along the normal at a point. */
-static void find_lever(const tobi_body *b, int64_t k, double lever[6])
-{
-    double arm[3];
-    for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
-    memcpy(lever, b->normal[k], 3*sizeof *lever);
-    vec3_cross(lever + 3, arm, b->normal[k]);
-}
-
-static void add_push(const tobi_body *b, int64_t k, double push, double f[6])
-{
-    double lever[6];
-    find_lever(b, k, lever);
-    for (int a = 0; a < 6; a++) f[a] += push*lever[a];
-}
-
 /* m/s2: of a point of a driven body along its normal; of a swimmer by its flow alone. */
 static double normal_acceleration(const body_points *q, int64_t k)
 {
@@ -183,7 +167,7 @@ static void weigh_points(const void *view, int64_t begin, int64_t end, double *t
         *p = b->area[k] > 0 && b->wet[k] ? sum_particles(q, k) : (isph_point){ 0 };
         p->weight = p->weight > 0 && p->weight + 0.5*held > DRY && held < 1 ? p->weight/(1 - held) : INFINITY;
         const double more = p->hydrostatic + q->v->density*p->distance*normal_acceleration(q, k);
-        add_push(b, k, -b->area[k]*more/p->weight, totals);
+        isph_bodies_push(b, k, -b->area[k]*more/p->weight, totals);
     }
 }
 
@@ -200,7 +184,7 @@ static void add_coupling(void *user, tobi_facing_points *l)
         const double w = g->q.scale*l->weight[i], all = g->q.point[k].weight;
         double push[6] = { 0 };
         if (!(w > 0 && all < INFINITY)) continue;
-        add_push(b, k, -b->area[k]*w/all, g->coupling.f);
+        isph_bodies_push(b, k, -b->area[k]*w/all, g->coupling.f);
         isph_gaps_add(&g->q.all[g->q.body], b, g->q.point, k, push);
         for (int a = 0; a < 6; a++) g->coupling.f[a] -= push[a]*w/all;
     }
@@ -348,7 +332,7 @@ static void sum_column(const void *view, int64_t begin, int64_t end, double *tot
     for (int64_t k = begin; k < end; k++) {
         const isph_point *p = &c->q.point[k];
         double lever[6];
-        find_lever(b, k, lever);
+        isph_bodies_lever(b, k, lever);
         const double mass = c->q.v->density*b->area[k]*p->distance/p->weight*lever[c->number];
         for (int a = 0; a < 6; a++) totals[a] += mass*lever[a];
     }

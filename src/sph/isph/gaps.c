@@ -2,9 +2,9 @@
    without pressure there the water above would hold it down for ever. A gap has the pressure of the points
    around it, its rim, on average, and that of liquid at rest from there on; a rim that is dry counts with no
    pressure. So the force stays linear in the pressures of the particles, and the equation symmetric.
-   Drawback: a gap has no flow, hence no suction when a body leaves fast, and no seal. */
+   Drawback: a gap has no flow, hence no suction when a body leaves fast. */
 #include "sph/isph/gaps.h"
-#include "geom/vec3.h"
+#include "sph/isph/bodies.h"
 #include "sph/state.h"
 #include <math.h>
 #include <string.h>
@@ -56,17 +56,6 @@ static void sum_rim(const void *view, int64_t begin, int64_t end, double *totals
     }
 }
 
-static void add_push(const tobi_body *b, int64_t k, double push, double f[6])
-{
-    double arm[3], turn[3];
-    for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
-    vec3_cross(turn, arm, b->normal[k]);
-    for (int a = 0; a < 3; a++) {
-        f[a] += push*b->normal[k][a];
-        f[3 + a] += push*turn[a];
-    }
-}
-
 /* A point may face two sides: each has its part. */
 static double share_of(const gap_view *g, int64_t k)
 {
@@ -76,7 +65,7 @@ static double share_of(const gap_view *g, int64_t k)
 static void sum_push(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const gap_view *g = view;
-    for (int64_t k = begin; k < end; k++) add_push(g->b, k, share_of(g, k), totals);
+    for (int64_t k = begin; k < end; k++) isph_bodies_push(g->b, k, share_of(g, k), totals);
 }
 
 /* The force of liquid at rest between the rim and the points of the gap. */
@@ -89,7 +78,7 @@ static void sum_rest(const void *view, int64_t begin, int64_t end, double *total
         if (area == 0) continue;
         if (g->v->acceleration.acts) tobi_acceleration_at(&g->v->acceleration, g->b->point[k], pull);
         for (int a = 0; a < 3; a++) deeper += (pull[a] + g->v->gravity[a])*(g->b->point[k][a] - g->middle[a]);
-        add_push(g->b, k, -area*g->wet*g->v->density*deeper, totals);
+        isph_bodies_push(g->b, k, -area*g->wet*g->v->density*deeper, totals);
     }
 }
 
