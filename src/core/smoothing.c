@@ -113,11 +113,13 @@ static lattice_sums sum_lattice(int shape, int dimension, double d, double h)
 static double integrate_plane(int shape, int dimension, double h, double z)
 {
     enum { N = 200 };
-    double end = sqrt(fmax(h*h - z*z, 0)), sum = 0;
+    double end = sqrt(fmax(h*h - z*z, 0)), sum = 0, square[N], w[N];
     for (int i = 0; i < N; i++) {
-        double a = (i + 0.5)*end/N, w = tobi_smoothing_w(shape, dimension, h, sqrt(a*a + z*z));
-        sum += w*(dimension == 3 ? 2*PI*a : 2);
+        double a = (i + 0.5)*end/N;
+        square[i] = a*a + z*z;
     }
+    tobi_smoothing_weigh(shape, dimension, h, N, square, w);
+    for (int i = 0; i < N; i++) sum += w[i]*(dimension == 3 ? 2*PI*((i + 0.5)*end/N) : 2);
     return sum*end/N;
 }
 
