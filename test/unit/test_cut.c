@@ -267,8 +267,8 @@ static void cut_once(double thickness, double offset, int transfer)
 static void every_blade_at_every_place(void **state)
 {
     (void)state;
-    for (int t = 1; t <= 4; t++)
-        for (int o = 0; o < 4; o++) cut_once(1e-3*t, 0.25*o, TOBI_APIC);
+    for (int t = 1; t <= 4; t += SANITIZED ? 3 : 1)
+        for (int o = 0; o < 4; o += SANITIZED ? 2 : 1) cut_once(1e-3*t, 0.25*o, TOBI_APIC);
 }
 
 static int thickness_in_space;           /* mm, 0: all */

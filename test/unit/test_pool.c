@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 enum { EDGE = 5 };
-static const double END = 0.1;                                   /* s */
+static const double END = SANITIZED ? 0.02 : 0.1;                /* s */
 static const double SPACING = 0.01, SIZE[3] = {26, 26, 19};      /* spacings: the water from wall to wall */
 
 /* Boxes of two spacings on a lattice that does not fit that of the particles. */

@@ -13,12 +13,7 @@
 
 static const char *const methods[] = { "dfsph", "wcsph", "isph", "eisph", "mlsmpm" };
 enum { METHODS = 4, BESIDE = 5 };           /* of liquids; with that of solids alone */
-/* Of liquids in the long runs: sanitizers take seven times as long, and momentum_is_kept has all. */
-#ifdef __SANITIZE_ADDRESS__
-enum { LONG = 1 };
-#else
-enum { LONG = METHODS };
-#endif
+enum { LONG = SANITIZED ? 1 : METHODS };    /* of liquids in the long runs: momentum_is_kept has all */
 static const double SPACING = 0.0125, GRAVITY = 9.81;
 
 /* A tank of 0.6 m, water in it, one block; 2-D. Boxes: x0, y0, x1, y1. */
