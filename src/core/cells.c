@@ -165,10 +165,11 @@ tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, con
     return q;
 }
 
+/* No more than what is needed and a little, as the list is by far the longest array: what a search needs
+   changes slowly, and nothing is copied. */
 static tobi_status grow_list(tobi_cells *c, int64_t entries, tobi_error *err)
 {
-    int64_t more = c->list_capacity;
-    while (more < entries) more += more/8;
+    const int64_t more = entries + entries/64;
     int32_t *list = tobi_array_make(more, sizeof *list);
     if (!list) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld neighbours", (long long)more);
     tobi_array_free(c->list);

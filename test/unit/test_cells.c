@@ -178,6 +178,22 @@ static void order_does_not_depend_on_threads(void **state)
     }
 }
 
+/* The list is the longest array: it has little room beyond what a search needs, however it grew. */
+static void list_fits_what_it_holds(void **state)
+{
+    const cloud dense = {3, 4000, {1, 1, 1}, {0, 0, 0}, 0.24, 0};
+    (void)state;
+    grid g;
+    place(&g, &dense, 2);
+    list(&g, &dense);
+    assert_true(g.cells.list_capacity > 4000*40 + 4096);          /* it has grown */
+    assert_true((double)g.cells.list_capacity < 1.04*(double)g.cells.list_used);
+    int64_t groups = 0;
+    for (int i = 0; i < dense.count; i++) groups += g.cells.list_groups[i];
+    assert_true((double)g.cells.list_used < 1.06*8*(double)groups);
+    drop(&g);
+}
+
 static void bad_boxes_are_refused(void **state)
 {
     (void)state;
@@ -200,6 +216,7 @@ int main(void)
         cmocka_unit_test(list_holds_all_pairs),
         cmocka_unit_test(sort_keeps_rows_and_orders_cells),
         cmocka_unit_test(order_does_not_depend_on_threads),
+        cmocka_unit_test(list_fits_what_it_holds),
         cmocka_unit_test(bad_boxes_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -94,16 +94,16 @@ void isph_solver_begin(isph_solver *m, tobi_system *s, const tobi_isph_def *def)
             v->side[k][a] = (int32_t)lround((k*v->size[a] - s->box.centre[a])*s->box.to_fixed[a]);
 }
 
+/* For the list of the last search; the old ones are of no use, and the new ones take their place. */
 static tobi_status reserve_entries(isph_solver *m, const tobi_cells *cells, tobi_error *err)
 {
-    if (cells->list_capacity <= m->entries) return TOBI_OK;
-    float *more = tobi_array_grow(m->view.entry, 0, cells->list_capacity, sizeof *more);
-    if (!more)
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a matrix of %lld entries",
-                         (long long)cells->list_capacity);
-    m->view.entry = more;
-    m->entries = cells->list_capacity;
-    return TOBI_OK;
+    if (cells->list_used <= m->entries) return TOBI_OK;
+    const int64_t entries = cells->list_used + cells->list_used/64;
+    tobi_array_free(m->view.entry);
+    m->view.entry = tobi_array_make(entries, sizeof *m->view.entry);
+    m->entries = m->view.entry ? entries : 0;
+    return m->view.entry ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for a matrix of %lld entries",
+                                               (long long)entries);
 }
 
 static int64_t krylov_work(const tobi_isph_def *def, int64_t rows)
