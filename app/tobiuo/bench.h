@@ -70,6 +70,8 @@ int bench_step(bench_run *run);
 void bench_end(bench_run *run);
 void bench_print(const bench_run *run, int threads);
 void bench_print_stages(const bench_run *run);
+/* Bytes per particle of each part of the world's memory. */
+void bench_print_memory(const tobi_world *world, double particles);
 /* bench_csv.c: appends the row of a measurement to o->csv, if there is one. */
 int bench_write(const bench_options *o, const char *name, const bench_run *run);
 

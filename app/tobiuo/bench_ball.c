@@ -49,6 +49,7 @@ static void print_ball(const bench_run *run, int threads)
     printf("memory                 %.0f bytes per particle in arrays, %.0f of the whole process\n",
            (double)tobi_world_bytes(run->world) / n, bench_peak_rss() / n);
     bench_print_stages(run);
+    bench_print_memory(run->world, n);
     printf("state                  %016llx\n", (unsigned long long)tobi_world_hash(run->world));
 }
 

@@ -133,6 +133,7 @@ void bench_print(const bench_run *run, int threads)
     printf("memory                 %.0f bytes per particle in arrays, %.0f of the whole process\n",
            (double)tobi_world_bytes(run->world) / n, r->peak_rss / n);
     bench_print_stages(run);
+    bench_print_memory(run->world, n);
 }
 
 void bench_print_stages(const bench_run *run)
@@ -142,5 +143,15 @@ void bench_print_stages(const bench_run *run)
     printf("\n  stage                  ns per particle and step\n");
     for (int k = 0; k < run->stages.count; k++)
         printf("  %-22s %8.2f\n", run->stages.name[k], run->stages.seconds[k] * each);
+    printf("\n");
+}
+
+void bench_print_memory(const tobi_world *world, double particles)
+{
+    const char *name;
+    int64_t bytes;
+    printf("  memory                           bytes per particle\n");
+    for (int k = 0; (name = tobi_world_memory(world, k, &bytes)); k++)
+        printf("  %-32s %8.1f\n", name, (double)bytes / particles);
     printf("\n");
 }

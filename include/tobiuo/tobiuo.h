@@ -243,8 +243,10 @@ TOBI_API tobi_status tobi_world_pieces(tobi_world *world, const tobi_pieces **pi
 
 /* Hash of the whole state (positions, velocities, pressures in id order): equal for any thread count. */
 TOBI_API uint64_t tobi_world_hash(tobi_world *world);
-/* Bytes the world has allocated. */
+/* Bytes the world has allocated for its systems. */
 TOBI_API int64_t tobi_world_bytes(const tobi_world *world);
+/* The same by what they hold: name and bytes by index, NULL past the end. */
+TOBI_API const char *tobi_world_memory(const tobi_world *world, int part, int64_t *bytes);
 /* Time spent per stage so far: name and seconds by index, NULL past the end. */
 TOBI_API const char *tobi_world_stage(const tobi_world *world, int stage, double *seconds);
 

@@ -5,6 +5,15 @@
 #include <math.h>
 #include <string.h>
 
+void tobi_account_add(tobi_account *a, const char *name, int64_t bytes)
+{
+    int k = 0;
+    while (k < a->count && strcmp(a->name[k], name) != 0) k++;
+    if (bytes == 0 || k == TOBI_ACCOUNT_LIMIT) return;
+    if (k == a->count) a->name[a->count++] = name, a->bytes[k] = 0;
+    a->bytes[k] += bytes;
+}
+
 /* totals: kinetic, potential, momentum x y z, mass. Potential against the box's lower corner. */
 static void measure_range(const void *view, int64_t begin, int64_t end, double *t)
 {

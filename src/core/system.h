@@ -7,6 +7,17 @@
 
 enum { TOBI_RESTORED_ROW = 9, TOBI_MEMORY_LIMIT = 64 };
 
+/* Bytes of memory by what they hold. */
+enum { TOBI_ACCOUNT_LIMIT = 24 };
+typedef struct tobi_account {
+    int count;
+    const char *name[TOBI_ACCOUNT_LIMIT];
+    int64_t bytes[TOBI_ACCOUNT_LIMIT];
+} tobi_account;
+
+/* To what the name has already; 0 bytes are left out. */
+void tobi_account_add(tobi_account *a, const char *name, int64_t bytes);
+
 typedef struct tobi_fluid {
     char name[64];
     double density, viscosity, tension;
@@ -164,8 +175,8 @@ typedef struct tobi_method {
        derived from it follows. loaded: the state is a checkpoint's, of that gravity already. NULL: nothing is
        kept. */
     void (*follow_gravity)(tobi_system *s, int loaded);
-    /* Bytes that the state has allocated; NULL = few. */
-    int64_t (*bytes)(const tobi_system *s);
+    /* Adds what the state has allocated; NULL = little. */
+    void (*account)(const tobi_system *s, tobi_account *a);
     void (*free)(void *state);
 } tobi_method;
 

@@ -7,7 +7,8 @@
 #include "linear/kernels.h"
 #include <string.h>
 
-enum { THREADED = 8000 };      /* nodes from which a sweep is worth sharing */
+enum { THREADED = 8000,        /* nodes from which a sweep is worth sharing */
+       GRID_ARRAYS = 7 };      /* of a level                                */
 
 static int64_t nodes_of(const tobi_grid_level *g) { return (int64_t)g->n[0]*g->n[1]*g->n[2]; }
 
@@ -41,7 +42,7 @@ tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, 
     m->wide = wide;
     m->visits = visits;
     const int64_t total = plan(m), cells = (int64_t)m->cells[0]*m->cells[1]*m->cells[2];
-    m->memory = tobi_array_zero(total*7, sizeof *m->memory);
+    m->memory = tobi_array_zero(total*GRID_ARRAYS, sizeof *m->memory);
     m->corner = tobi_array_zero(cells, sizeof *m->corner);
     if (!m->memory || !m->corner) {
         tobi_multigrid_free(m);
@@ -52,9 +53,17 @@ tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, 
         tobi_grid_level *g = &m->grid[l];
         float **array[] = {&g->value, &g->source, &g->next, &g->face[0], &g->face[1], &g->face[2],
                            &g->inverse};
-        for (int k = 0; k < 7; k++, at += nodes_of(g)) *array[k] = at;
+        for (int k = 0; k < GRID_ARRAYS; k++, at += nodes_of(g)) *array[k] = at;
     }
     return TOBI_OK;
+}
+
+int64_t tobi_multigrid_bytes(const tobi_multigrid *m)
+{
+    int64_t bytes = 0;
+    if (!m->memory) return 0;
+    for (int l = 0; l < m->levels; l++) bytes += nodes_of(&m->grid[l])*GRID_ARRAYS*(int64_t)sizeof *m->memory;
+    return bytes + (int64_t)m->cells[0]*m->cells[1]*m->cells[2]*(int64_t)sizeof *m->corner;
 }
 
 void tobi_multigrid_free(tobi_multigrid *m)

@@ -44,6 +44,8 @@ typedef struct tobi_grid_weights {
 tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, int wide, int visits,
                                   tobi_error *err);
 void tobi_multigrid_free(tobi_multigrid *m);
+/* Allocated. */
+int64_t tobi_multigrid_bytes(const tobi_multigrid *m);
 
 /* Weights for points in the cells of tobi_multigrid_create. The arrays of w are not read later. */
 void tobi_multigrid_set(tobi_multigrid *m, tobi_exec *x, const tobi_cell_points *p,

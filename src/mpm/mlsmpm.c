@@ -513,7 +513,11 @@ static void bind_inserted(tobi_system *s)
     m->memory.age = SORT_AGE;
 }
 
-static int64_t count_bytes(const tobi_system *s) { return mpm_grid_bytes(&((const mlsmpm *)s->state)->grid); }
+static void account(const tobi_system *s, tobi_account *a)
+{
+    const mlsmpm *m = s->state;
+    tobi_account_add(a, "grid of solids", mpm_grid_bytes(&m->grid));
+}
 
 static void free_state(void *state)
 {
@@ -555,6 +559,6 @@ const tobi_method tobi_mlsmpm = {
     .restore = restore_rows,
     .inserted = bind_inserted,
     .follow_gravity = follow_gravity,
-    .bytes = count_bytes,
+    .account = account,
     .free = free_state,
 };

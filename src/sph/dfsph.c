@@ -549,6 +549,14 @@ static void follow_gravity(tobi_system *s, int loaded)
     if (!loaded) sph_reference_follow(s, &m->view, m->kernel, &surface);
 }
 
+static void account(const tobi_system *s, tobi_account *a)
+{
+    const dfsph *m = s->state;
+    sph_account(s, a);
+    tobi_account_add(a, "grid of the solver", tobi_multigrid_bytes(&m->grid));
+    tobi_account_add(a, "copies to take a step back", sph_undo_bytes(&m->undo, s));
+}
+
 static void free_state(void *state)
 {
     dfsph *m = state;
@@ -583,6 +591,6 @@ const tobi_method tobi_dfsph = {
     .derive = derive,
     .memory = list_memory,
     .follow_gravity = follow_gravity,
-    .bytes = sph_bytes,
+    .account = account,
     .free = free_state,
 };

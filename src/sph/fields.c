@@ -45,7 +45,8 @@ void sph_read(const tobi_system *s, const char *name, int64_t i, double *out)
     }
 }
 
-int64_t sph_bytes(const tobi_system *s)
+void sph_account(const tobi_system *s, tobi_account *a)
 {
-    return tobi_boundary_links_bytes(&sph_of(s)->links) + sph_soft_bytes(&sph_of(s)->soft);
+    tobi_account_add(a, "particles beside bodies", tobi_boundary_links_bytes(&sph_of(s)->links));
+    tobi_account_add(a, "liquid beside solids", sph_soft_bytes(&sph_of(s)->soft));
 }

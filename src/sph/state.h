@@ -37,5 +37,5 @@ extern const tobi_output sph_outputs[];
 unsigned sph_needs(const tobi_system *s, int full);
 /* Pressure, density and sph_outputs of one particle. */
 void sph_read(const tobi_system *s, const char *name, int64_t i, double *out);
-/* Of the state: method->bytes. */
-int64_t sph_bytes(const tobi_system *s);
+/* What the state has in common with other SPH methods: method->account. */
+void sph_account(const tobi_system *s, tobi_account *a);

@@ -85,6 +85,17 @@ void sph_undo_restore(const sph_undo *u, tobi_system *s, double *memory, int n)
     }
 }
 
+int64_t sph_undo_bytes(const sph_undo *u, const tobi_system *s)
+{
+    int64_t row = 0;
+    for (int k = 0; k < SPH_UNDO_FIELDS; k++) {
+        void *data;
+        const tobi_field *f = tobi_particles_state(&s->particles, k, &data);
+        if (f && u->field[k]) row += (int64_t)f->bytes;
+    }
+    return row*(u->rows + 1);
+}
+
 void sph_undo_free(sph_undo *u)
 {
     free(u->body);

@@ -303,6 +303,6 @@ const tobi_method tobi_wcsph = {
     .derive = derive,
     .memory = list_memory,
     .follow_gravity = follow_gravity,
-    .bytes = sph_bytes,
+    .account = sph_account,
     .free = free_state,
 };

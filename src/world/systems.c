@@ -276,14 +276,42 @@ tobi_status tobi_world_start_system(tobi_world *w, tobi_system *s, tobi_error *e
     return TOBI_OK;
 }
 
-int64_t tobi_world_bytes(const tobi_world *w)
+static void account_particles(const tobi_particles *p, unsigned needs, tobi_account *a)
 {
-    int64_t bytes = 0;
+    int64_t kept = 0;
+    void *data;
+    const tobi_field *f;
+    for (int k = 0; (f = tobi_particles_state(p, k, &data)); k++) kept += (int64_t)f->bytes;
+    tobi_account_add(a, "state of the particles", p->capacity*kept);
+    tobi_account_add(a, "other fields of the particles",
+                     p->capacity*(tobi_particles_row_bytes(p->list, needs) - kept));
+}
+
+static tobi_account account(const tobi_world *w)
+{
+    tobi_account a = { 0 };
     for (int k = 0; w && k < w->system_count; k++) {
         const tobi_system *s = &w->system[k];
-        bytes += s->particles.capacity*row_bytes(w, s) + s->row_capacity*4 +
-                 s->cells.list_capacity*4 + s->cells.total*4 +
-                 (s->method->bytes && s->state ? s->method->bytes(s) : 0);
+        account_particles(&s->particles, needed_fields(w, s), &a);
+        tobi_account_add(&a, "cells", s->cells.rows*TOBI_CELLS_ROW + (s->cells.total + s->row_capacity)*4);
+        tobi_account_add(&a, "neighbour lists", s->cells.list_capacity*(int64_t)sizeof *s->cells.list);
+        if (s->method->account && s->state) s->method->account(s, &a);
     }
+    return a;
+}
+
+const char *tobi_world_memory(const tobi_world *w, int part, int64_t *bytes)
+{
+    const tobi_account a = account(w);
+    if (part < 0 || part >= a.count) return NULL;
+    if (bytes) *bytes = a.bytes[part];
+    return a.name[part];
+}
+
+int64_t tobi_world_bytes(const tobi_world *w)
+{
+    const tobi_account a = account(w);
+    int64_t bytes = 0;
+    for (int k = 0; k < a.count; k++) bytes += a.bytes[k];
     return bytes;
 }

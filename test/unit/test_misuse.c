@@ -95,11 +95,13 @@ static void no_world_and_no_text(void **state)
         assert_null(tobi_world_probe_name(w, k, NULL));
         assert_null(tobi_world_note(NULL, k));
         assert_null(tobi_world_stage(w, k, NULL));
+        assert_null(tobi_world_memory(w, k < 0 ? k : 1000, NULL));
         assert_null(tobi_world_field_name(k < 0 ? k : 1000, NULL, NULL));
     }
     assert_true(tobi_world_time(NULL) == 0 && tobi_world_stable_step(NULL) == 0);
     assert_false(tobi_world_closed(NULL, NULL));
-    assert_true(!tobi_world_info(NULL) && !tobi_world_note(NULL, 0) && !tobi_world_stage(NULL, 0, NULL));
+    assert_true(!tobi_world_info(NULL) && !tobi_world_note(NULL, 0) && !tobi_world_stage(NULL, 0, NULL) &&
+                !tobi_world_memory(NULL, 0, NULL));
     assert_true(!tobi_world_body_name(NULL, 0) && !tobi_world_probe_name(NULL, 0, NULL));
     assert_int_equal(tobi_world_body_count(NULL) + tobi_world_solid_count(NULL) +
                         tobi_world_probe_count(NULL), 0);

@@ -427,10 +427,12 @@ void isph_read(const tobi_system *s, const char *field, int64_t i, double *out)
     else sph_read(s, field, i, out);
 }
 
-int64_t isph_count_bytes(const tobi_system *s)
+void isph_account(const tobi_system *s, tobi_account *a)
 {
     const isph *m = s->state;
-    return sph_bytes(s) + isph_solver_bytes(&m->solver);
+    sph_account(s, a);
+    isph_solver_account(&m->solver, a);
+    tobi_account_add(a, "copies to take a step back", sph_undo_bytes(&m->undo, s));
 }
 
 void isph_free_state(void *state)

@@ -296,12 +296,16 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
     return report;
 }
 
-int64_t isph_solver_bytes(const isph_solver *m)
+void isph_solver_account(const isph_solver *m, tobi_account *a)
 {
-    return (m->rows + TOBI_PAD_ROWS)*row_bytes() + m->krylov_rows*(int64_t)sizeof *m->krylov +
-           m->entries*(int64_t)sizeof *m->view.entry +
-           m->mirrors*(int64_t)(sizeof *m->mirror + sizeof *m->brief + sizeof *m->view.first_group) +
-           m->view.group_room*(int64_t)sizeof *m->view.group + isph_forces_bytes(m);
+    tobi_account_add(a, "rows of the matrix", (m->rows + TOBI_PAD_ROWS)*row_bytes());
+    tobi_account_add(a, "entries of the matrix", m->entries*(int64_t)sizeof *m->view.entry);
+    tobi_account_add(a, "vectors of the solver", m->krylov_rows*(int64_t)sizeof *m->krylov);
+    tobi_account_add(a, "grid of the solver", tobi_multigrid_bytes(&m->grid));
+    tobi_account_add(a, "images at bodies", m->view.group_room*(int64_t)sizeof *m->view.group);
+    tobi_account_add(a, "images at bodies",
+                     m->mirrors*(int64_t)(sizeof *m->mirror + sizeof *m->brief + sizeof *m->view.first_group));
+    tobi_account_add(a, "particles beside bodies", isph_forces_bytes(m));
 }
 
 void isph_solver_free(isph_solver *m)
