@@ -69,26 +69,30 @@ static tobi_status give_up(tobi_cells *c, tobi_error *err)
 /* Nothing is kept: all is made anew after the next sort. */
 tobi_status tobi_cells_grow(tobi_cells *c, const tobi_particles *p, tobi_error *err)
 {
-    const int64_t n = p->capacity, sort = scratch_entries(n, tobi_particles_widest(p)) + 16;
-    const int64_t guess = n*36 + 4096, entries = sort > guess ? sort : guess;
+    const int64_t n = p->capacity, sort = 4*(scratch_entries(n, tobi_particles_widest(p)) + 16);
+    const int64_t guess = 2*(n*36 + 4096), bytes = sort > guess ? sort : guess;
     if (!c->record || c->rows < n) {
         tobi_array_free(c->record);
         tobi_array_free(c->list_start);
         tobi_array_free(c->list_groups);
+        tobi_array_free(c->list_far);
         tobi_array_free(c->region);
         c->rows = n;
         c->regions = 0;
         c->record = tobi_particles_rows(n, sizeof *c->record);
         c->list_start = tobi_particles_rows(n, sizeof *c->list_start);
         c->list_groups = tobi_particles_rows(n, sizeof *c->list_groups);
+        c->list_far = c->wide ? NULL : tobi_particles_rows(n, sizeof *c->list_far);
         c->region = tobi_array_zero(n/TOBI_BLOCK + 1, sizeof *c->region);
     }
-    if (!c->list || c->list_capacity < entries) {
+    if (!c->list || c->list_bytes < bytes) {
         tobi_array_free(c->list);
-        c->list_capacity = entries;
-        c->list = tobi_array_make(entries, sizeof *c->list);
+        c->list_bytes = bytes;
+        c->list = tobi_array_make(bytes, 1);
     }
-    return c->record && c->list_start && c->list_groups && c->region && c->list ? TOBI_OK : give_up(c, err);
+    const int far = c->list_far || c->wide;
+    return c->record && c->list_start && c->list_groups && far && c->region && c->list ? TOBI_OK
+                                                                                       : give_up(c, err);
 }
 
 tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, const tobi_particles *p,
@@ -116,6 +120,7 @@ void tobi_cells_free(tobi_cells *c)
     tobi_array_free(c->record);
     tobi_array_free(c->list_start);
     tobi_array_free(c->list_groups);
+    tobi_array_free(c->list_far);
     tobi_array_free(c->region);
     memset(c, 0, sizeof *c);
 }
@@ -124,8 +129,8 @@ static tobi_cells_view see_cells(const tobi_cells *c, const tobi_box *box, const
 {
     tobi_cells_view v = {
         .count = p->count, .strip = c->strip, .total = c->total, .start = c->start,
-        .keys = (uint32_t *)c->list, .position = p->position, .record = c->record,
-        .list_start = c->list_start, .list_groups = c->list_groups,
+        .keys = c->list, .position = p->position, .record = c->record,
+        .list_start = c->list_start, .list_groups = c->list_groups, .list_far = c->list_far,
     };
     memcpy(v.n, c->n, sizeof v.n);
     memcpy(v.periodic, c->periodic, sizeof v.periodic);
@@ -165,17 +170,28 @@ tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, con
     return q;
 }
 
+/* Entries that there is room for. */
+static int64_t list_room(const tobi_cells *c) { return c->list_bytes/(int64_t)tobi_list_size(c->list_far); }
+
 /* No more than what is needed and a little, as the list is by far the longest array: what a search needs
    changes slowly, and nothing is copied. */
 static tobi_status grow_list(tobi_cells *c, int64_t entries, tobi_error *err)
 {
-    const int64_t more = entries + entries/64;
-    int32_t *list = tobi_array_make(more, sizeof *list);
+    const int64_t more = entries + entries/64, size = (int64_t)tobi_list_size(c->list_far);
+    void *list = tobi_array_make(more, (size_t)size);
     if (!list) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld neighbours", (long long)more);
     tobi_array_free(c->list);
     c->list = list;
-    c->list_capacity = more;
+    c->list_bytes = more*size;
     return TOBI_OK;
+}
+
+/* Whole numbers from now on. */
+static void widen_list(tobi_cells *c)
+{
+    tobi_array_free(c->list_far);
+    c->list_far = NULL;
+    c->wide = 1;
 }
 
 /* What blocks need that no search knows of: as much as the others, or an equal part of the list. */
@@ -183,7 +199,7 @@ static void guess_needs(tobi_cells *c, int64_t blocks)
 {
     int64_t sum = 0;
     for (int64_t b = 0; b < c->regions; b++) sum += c->region[b].groups;
-    const int64_t guess = c->regions ? sum/c->regions : c->list_capacity/8/(blocks + blocks/32 + 1);
+    const int64_t guess = c->regions ? sum/c->regions : list_room(c)/8/(blocks + blocks/32 + 1);
     for (int64_t b = c->regions; b < blocks; b++) c->region[b].groups = (uint32_t)guess;
     c->regions = blocks;
 }
@@ -221,15 +237,18 @@ tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_p
     const int64_t blocks = (p->count + TOBI_BLOCK - 1)/TOBI_BLOCK;
     const tobi_kernel search = tobi_core_kernels_for(x->isa)->cells_search;
     tobi_cells_view v = see_cells(c, box, p);
-    int overflow = 0;
+    int overflow = 0, far_apart = 0;
     v.h2 = (float)(h*h);
     v.overflow = &overflow;
+    v.far_apart = &far_apart;
     v.region = c->region;
     guess_needs(c, blocks);
     for (;;) {
         int64_t end = place_regions(c, blocks), last = end;
-        if (8*end > c->list_capacity) TOBI_TRY(grow_list(c, 8*end, err));
+        if (8*end > list_room(c)) TOBI_TRY(grow_list(c, 8*end, err));
         v.list = c->list;
+        v.list_far = c->list_far;
+        far_apart = 0;
         do {
             end = last;
             tobi_launch(x, search, &v, 0, p->count, NULL);
@@ -237,8 +256,9 @@ tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_p
                 return tobi_fail(err, TOBI_DIVERGED,
                                  "more than 1000 particles crowd into one support radius");
             last = move_regions(c, blocks, end);
-        } while (last > end && 8*last <= c->list_capacity);
+        } while (last > end && 8*last <= list_room(c) && !far_apart);
         c->list_used = 8*end;
-        if (last == end) return TOBI_OK;
+        if (last == end && !far_apart) return TOBI_OK;
+        if (far_apart) widen_list(c);
     }
 }

@@ -4,6 +4,7 @@
 #pragma once
 #include "core/particles.h"
 #include "exec/exec.h"
+#include "exec/list.h"
 #include "exec/strips.h"
 #include "linear/grid.h"
 
@@ -32,8 +33,8 @@ typedef struct tobi_cells {
     int32_t *start;         /* [total + 1] first particle of each cell                */
     /* scratch of the sort; shares memory with the neighbour list */
     int64_t *histogram;
-    int32_t *list;          /* neighbour indices, groups of 8 padded with the own index */
-    int64_t  list_capacity; /* in int32                                               */
+    void    *list;          /* neighbours, groups of 8 padded with the own index, see exec/list.h */
+    int64_t  list_bytes;
     int64_t  list_used;     /* up to the last entry, gaps between regions included    */
     struct tobi_list_region *region;    /* of each block of particles, see core/cells.k.h */
     int64_t  regions;       /* of which the last search says how much they need       */
@@ -41,6 +42,8 @@ typedef struct tobi_cells {
     tobi_record *record;    /* fixed-point position; w: a number that neighbours read  */
     uint32_t *list_start;   /* first neighbour, in groups of 8                        */
     uint16_t *list_groups;  /* groups of 8 neighbours                                 */
+    int32_t *list_far;      /* exec/list.h                                            */
+    int      wide;          /* 1: the list has whole numbers, list_far is NULL        */
     int64_t  rows;          /* that there is memory for                               */
 } tobi_cells;
 
@@ -51,7 +54,7 @@ tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, cons
 tobi_status tobi_cells_grow(tobi_cells *c, const tobi_particles *p, tobi_error *err);
 void tobi_cells_free(tobi_cells *c);
 /* Bytes per particle, without the neighbours. */
-enum { TOBI_CELLS_ROW = sizeof(tobi_record) + sizeof(uint32_t) + sizeof(uint16_t) };
+enum { TOBI_CELLS_ROW = sizeof(tobi_record) + sizeof(uint32_t) + sizeof(uint16_t) + sizeof(int32_t) };
 
 /* Wraps periodic positions, sorts all state fields by cell, fills start and the records, their w from
    `payload`, a field of p; NULL = 0. */
@@ -65,6 +68,23 @@ static inline int64_t tobi_cells_row(const tobi_cells *c, int y, int z)
 
 /* The particles of the last sort as unknowns of a grid. */
 tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, const tobi_particles *p);
+
+/* The list of row i, the own index in the places that are filled up with it: its length, and where it is, or
+   j, where it has been unpacked to. */
+static inline const int32_t *tobi_cells_neighbors(const tobi_cells *c, int64_t i, int *count,
+                                                  int32_t j[TOBI_LIST_LIMIT])
+{
+    *count = 8*c->list_groups[i];
+    return tobi_list_load(c->list, c->list_far, i, 8*(int64_t)c->list_start[i], *count, j);
+}
+
+/* Puts the own index into place k of the list of row i. */
+static inline void tobi_cells_cut(const tobi_cells *c, int64_t i, int k)
+{
+    const int64_t at = 8*(int64_t)c->list_start[i] + k;
+    if (c->list_far) ((uint16_t *)c->list)[at] = TOBI_LIST_OWN;
+    else ((int32_t *)c->list)[at] = (int32_t)i;
+}
 
 /* Builds the list of all pairs nearer than h. TOBI_DIVERGED when particles crowd beyond sense. */
 tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_particles *p, tobi_exec *x,

@@ -25,11 +25,13 @@ typedef struct tobi_cells_view {
     const float *payload;                     /* of the records, NULL = 0                           */
     uint32_t *list_start;
     uint16_t *list_groups;
+    int32_t *list_far;                        /* exec/list.h                                        */
     /* the list */
-    int32_t *list;
+    void    *list;
     float    h2;                              /* m2, square of the support radius                   */
     tobi_list_region *region;                 /* of each block of TOBI_BLOCK particles              */
     int *overflow;                            /* set to 1 if a particle has too many neighbours     */
+    int *far_apart;                           /* set to 1 if a list cannot be packed                */
 } tobi_cells_view;
 
 TOBI_FN int cells_along(const tobi_cells_view *v, int axis, double x)

@@ -20,7 +20,7 @@ typedef uint32_t many_uint __attribute__((vector_size(4*MANY)));
 enum {
     BATCH = 16,               /* particles of one cell that are searched for together     */
     CHUNK = 512,              /* candidates unpacked at once                              */
-    MAX_NEIGHBORS = 1024, ROOM = MAX_NEIGHBORS + 32, MAX_RUNS = 27,
+    MAX_NEIGHBORS = TOBI_LIST_LIMIT, ROOM = MAX_NEIGHBORS + 32, MAX_RUNS = 27,
     FOUND = 2*BATCH*ROOM      /* entries kept before they go to the region of their block  */
 };
 
@@ -170,16 +170,18 @@ static int search_cell(const tobi_cells_view *v, const run *runs, int run_count,
    before them. */
 typedef struct lists { int32_t begin, end; int64_t used, groups; int32_t found[FOUND]; } lists;
 
-/* Whole groups of 8, padded with the particle itself. */
-static void append(const tobi_cells_view *v, const batch *b, lists *l)
+/* Whole groups of 8, padded with the particle itself, packed if the lists are. */
+static void append(const tobi_cells_view *v, batch *b, lists *l)
 {
     for (int32_t i = b->begin; i < b->end; i++) {
         int n = b->count[i - b->begin];
-        int32_t *to = l->found + l->used;
+        int32_t *hits = b->hits[i - b->begin];
         v->list_start[i] = (uint32_t)(l->used/8);
         v->list_groups[i] = (uint16_t)((n + 7)/8);
-        __builtin_memcpy(to, b->hits[i - b->begin], (size_t)n*sizeof *to);
-        while (n & 7) to[n++] = i;
+        while (n & 7) hits[n++] = i;
+        if (!v->list_far) __builtin_memcpy(l->found + l->used, hits, (size_t)n*sizeof *hits);
+        else if (!tobi_list_pack(hits, n, i, &v->list_far[i], (uint16_t *)l->found + l->used))
+            *v->far_apart = 1;
         l->used += n;
     }
     l->end = b->end;
@@ -191,7 +193,8 @@ static void move_lists(const tobi_cells_view *v, const tobi_list_region *to, lis
     const int64_t start = to->begin + l->groups;
     l->groups += l->used/8;
     if (l->groups <= to->room) {
-        __builtin_memcpy(v->list + 8*start, l->found, (size_t)l->used*sizeof *l->found);
+        const size_t size = tobi_list_size(v->list_far);
+        __builtin_memcpy((char *)v->list + 8*(size_t)start*size, l->found, (size_t)l->used*size);
         for (int32_t i = l->begin; i < l->end; i++) v->list_start[i] += (uint32_t)start;
     }
     l->begin = l->end;

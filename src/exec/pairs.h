@@ -3,9 +3,9 @@
      K##_start(v, i, &acc)               before the neighbours
      K##_pair(v, i, &near, &acc)         eight neighbours: near.dx/dy/dz = x_i - x_j, r2, index, payload
      K##_finish(v, i, &acc, totals)      after them; the only place that writes
-   v is a view with members record, list, list_start, list_groups, from_fixed. */
+   v is a view with members record, list, list_far, list_start, list_groups, from_fixed. */
 #pragma once
-#include "exec/portable.h"
+#include "exec/list.h"
 
 typedef struct tobi_neighbors {
     lane dx, dy, dz, r2, w;      /* w: payload of the neighbour's record */
@@ -20,9 +20,12 @@ typedef struct tobi_neighbors {
         for (int64_t i = begin; i < end; i++) {                                                  \
             K##_acc acc;                                                                         \
             const tobi_record own = v->record[i];                                                \
-            const int32_t *j = v->list + 8*(int64_t)v->list_start[i];                            \
+            const int count = 8*v->list_groups[i];                                               \
+            int32_t unpacked[TOBI_LIST_LIMIT];                                                   \
+            const int32_t *j = tobi_list_load(v->list, v->list_far, i, 8*(int64_t)v->list_start[i], count, \
+                                              unpacked);                                         \
             K##_start(v, i, &acc);                                                               \
-            for (int g = 0; g < 8*v->list_groups[i]; g += TOBI_LANES) {                          \
+            for (int g = 0; g < count; g += TOBI_LANES) {                                        \
                 tobi_neighbors near;                                                             \
                 lane_int x, y, z;                                                                \
                 near.j = j + g;                                                                  \

@@ -143,11 +143,12 @@ static int order_ids(const void *a, const void *b)
 static int64_t *list_neighbours(const tobi_system *s, int64_t row, int64_t *count)
 {
     const tobi_cells *c = &s->cells;
-    const int64_t entries = 8*(int64_t)c->list_groups[row];
-    const int32_t *list = c->list + 8*(int64_t)c->list_start[row];
+    int32_t unpacked[TOBI_LIST_LIMIT];
+    int entries;
+    const int32_t *list = tobi_cells_neighbors(c, row, &entries, unpacked);
     int64_t *ids = malloc((size_t)(entries + 1)*sizeof *ids);
     *count = 0;
-    for (int64_t k = 0; ids && k < entries; k++)
+    for (int k = 0; ids && k < entries; k++)
         if (list[k] != row) ids[(*count)++] = s->first_id + s->particles.id[list[k]];
     if (ids) qsort(ids, (size_t)*count, sizeof *ids, order_ids);
     return ids;
@@ -284,10 +285,12 @@ static tobi_status write_rows(const look *k, points *p, ask_row *ask, const char
 static tobi_status write_sphere(const look *k, points *p, tobi_error *err)
 {
     const tobi_cells *c = &k->s->cells;
-    const int32_t *list = c->list + 8*(int64_t)c->list_start[k->row];
+    int32_t unpacked[TOBI_LIST_LIMIT];
+    int entries;
+    const int32_t *list = tobi_cells_neighbors(c, k->row, &entries, unpacked);
     p->count = 0;
     add_row(p, k, k->row);
-    for (int64_t n = 0; n < 8*(int64_t)c->list_groups[k->row]; n++)
+    for (int n = 0; n < entries; n++)
         if (list[n] != k->row) add_row(p, k, list[n]);
     return write_points(k, p, "inSphere.vtp", 4, err);
 }

@@ -41,10 +41,12 @@ static around look_around(const tobi_system *s, int64_t i)
     const tobi_particles *p = &s->particles;
     const sph_fields *f = sph_fields_of(p);
     const tobi_smoothing_constants *c = &s->smoothing;
-    const int32_t *j = s->cells.list + 8*(int64_t)s->cells.list_start[i];
+    int32_t unpacked[TOBI_LIST_LIMIT];
+    int count;
+    const int32_t *j = tobi_cells_neighbors(&s->cells, i, &count, unpacked);
     const double base = tobi_reference_pressure(&sph_of(s)->reference, &p->position[i].x);
     around sum = { 0 };
-    for (int k = 0; k < 8*s->cells.list_groups[i]; k++) {
+    for (int k = 0; k < count; k++) {
         if (j[k] == i) continue;
         double still = 0, r2 = 0;
         for (int a = 0; a < c->dimension; a++) {

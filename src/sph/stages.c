@@ -93,7 +93,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     v->outlet_normal = sph_of(s)->normal;
     v->last_link = s->sim->body_count > 0 ? f->last_link : NULL;
     v->fluid = p->fluid; v->list_start = s->cells.list_start; v->list_groups = s->cells.list_groups;
-    v->list = s->cells.list;
+    v->list = s->cells.list; v->list_far = s->cells.list_far;
     memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
     v->h = (float)c->h; v->inverse_h = (float)(1/c->h); v->shape = c->shape;
     v->weight = (float)c->weight; v->slope = (float)c->slope;
@@ -186,7 +186,7 @@ tobi_status sph_find_boundaries(tobi_system *s, sph_view *v, const sph_kernels *
         TOBI_TRY(tobi_boundary_search(s, err));
         tobi_stage_end(&s->sim->stages, "body search", clock);
         TOBI_TRY(tobi_boundary_measure(s, err));
-        tobi_boundary_cut_pairs(s);
+        TOBI_TRY(tobi_boundary_cut_pairs(s, err));
         tobi_boundary_mark_near_body(s);
         tobi_boundary_add_gradients(s);
     }

@@ -49,7 +49,8 @@ typedef struct sph_view {
     const tobi_float4 *TOBI_RESTRICT held;    /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none */
     const tobi_float4 *outlet_normal;         /* of each opening, by |w| - 1; w = 1: sph_carried */
     /* neighbour list */
-    const int32_t *TOBI_RESTRICT list;
+    const void *TOBI_RESTRICT list;
+    const int32_t *TOBI_RESTRICT list_far;
     const uint32_t *TOBI_RESTRICT list_start;
     const uint16_t *TOBI_RESTRICT list_groups;
     /* constants of the discretisation */

@@ -151,7 +151,7 @@ static int64_t list_bytes(const tobi_system *s)
 {
     if (s->method->solids) return 80;
     double r = s->smoothing.h/s->smoothing.spacing;
-    return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
+    return (int64_t)(2*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
 }
 
 tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles,
@@ -294,7 +294,7 @@ static tobi_account account(const tobi_world *w)
         const tobi_system *s = &w->system[k];
         account_particles(&s->particles, needed_fields(w, s), &a);
         tobi_account_add(&a, "cells", s->cells.rows*TOBI_CELLS_ROW + (s->cells.total + s->row_capacity)*4);
-        tobi_account_add(&a, "neighbour lists", s->cells.list_capacity*(int64_t)sizeof *s->cells.list);
+        tobi_account_add(&a, "neighbour lists", s->cells.list_bytes);
         if (s->method->account && s->state) s->method->account(s, &a);
     }
     return a;

@@ -71,7 +71,8 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->wetness = f->wetness; v->damped = f->damped;
     v->residual = f->residual; v->product = f->product; v->delta = f->delta; v->surface = f->surface;
     v->pressure = f->pressure; v->fluid = p->fluid;
-    v->list = g->cells.list; v->list_start = g->cells.list_start; v->list_groups = g->cells.list_groups;
+    v->list = g->cells.list; v->list_far = g->cells.list_far;
+    v->list_start = g->cells.list_start; v->list_groups = g->cells.list_groups;
     for (int a = 0; a < 3; a++) v->from_fixed[a] = g->box.from_fixed[a];
     v->h = (float)g->c.h; v->inverse_h = (float)(1/g->c.h); v->shape = k->shape;
     v->weight = (float)g->c.weight; v->slope = (float)g->c.slope;
@@ -205,8 +206,10 @@ static void rig_hide_walls(rig *g)
     for (int64_t i = 0; i < p->count; i++) f->last_link[i] = p->id[i]%3 == 0 ? 0 : -1;
     for (int64_t i = 0; i < p->count; i++) {
         f->near_body[i] = f->last_link[i] >= 0;
-        for (int n = 0; n < 8*g->cells.list_groups[i]; n++)
-            f->near_body[i] |= f->last_link[g->cells.list[8*(int64_t)g->cells.list_start[i] + n]] >= 0;
+        int32_t unpacked[TOBI_LIST_LIMIT];
+        int count;
+        const int32_t *list = tobi_cells_neighbors(&g->cells, i, &count, unpacked);
+        for (int n = 0; n < count; n++) f->near_body[i] |= f->last_link[list[n]] >= 0;
     }
 }
 

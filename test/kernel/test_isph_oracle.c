@@ -111,6 +111,7 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     view.answer = answers;
     view.record = pool.cells.record;
     view.list = pool.cells.list;
+    view.list_far = pool.cells.list_far;
     view.list_start = pool.cells.list_start;
     view.list_groups = pool.cells.list_groups;
     put_body();

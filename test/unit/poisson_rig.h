@@ -105,6 +105,11 @@ static poisson_pair poisson_sum(const poisson *q, int64_t i, int64_t j)
     return s;
 }
 
+static int64_t poisson_neighbour(const poisson *q, int64_t i, int64_t k)
+{
+    return tobi_list_at(q->cells.list, q->cells.list_far, i, k);
+}
+
 #define POISSON_NEIGHBOURS(q, i, k)                                                                  \
     for (int64_t k = 8*(int64_t)(q)->cells.list_start[i], end_ = k + 8*(int64_t)(q)->cells.list_groups[i];  \
          k < end_; k++)
@@ -116,7 +121,8 @@ static void poisson_moments(const void *view, int64_t begin, int64_t end, double
     for (int64_t i = begin; i < end; i++) {
         double moment = poisson_sum(q, i, i).moment;
         POISSON_NEIGHBOURS(q, i, k)
-            if (q->cells.list[k] != i) moment += poisson_sum(q, i, q->cells.list[k]).moment;
+            if (poisson_neighbour(q, i, k) != i)
+                moment += poisson_sum(q, i, poisson_neighbour(q, i, k)).moment;
         q->factor[i] = moment;
     }
 }
@@ -138,7 +144,7 @@ static void poisson_rows(const void *view, int64_t begin, int64_t end, double *t
         double sum = 0;
         q->b[i] = 2*ki*own.source;
         POISSON_NEIGHBOURS(q, i, k) {
-            const int64_t j = q->cells.list[k];
+            const int64_t j = poisson_neighbour(q, i, k);
             const int none = j == i || poisson_apart(q, i, j);
             const poisson_pair s = none ? (poisson_pair){0, 0, 0} : poisson_sum(q, i, j);
             const double both = ki + poisson_factor(q, j);
@@ -158,7 +164,7 @@ static void poisson_product(const void *view, int64_t begin, int64_t end, double
     (void)totals;
     for (int64_t i = begin; i < end; i++) {
         double sum = q->excess[i]*q->in[i];
-        POISSON_NEIGHBOURS(q, i, k) sum += q->weight[k]*(q->in[i] - q->in[q->cells.list[k]]);
+        POISSON_NEIGHBOURS(q, i, k) sum += q->weight[k]*(q->in[i] - q->in[poisson_neighbour(q, i, k)]);
         q->out[i] = sum;
     }
 }

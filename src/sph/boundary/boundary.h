@@ -28,7 +28,7 @@ void tobi_boundary_find_neighbors(struct tobi_system *s);
    it. */
 int tobi_boundary_covers(const struct tobi_system *s, const double x[3], const double n[3]);
 /* Replaces neighbours that lie behind a body by the particle itself in the list. */
-void tobi_boundary_cut_pairs(struct tobi_system *s);
+tobi_status tobi_boundary_cut_pairs(struct tobi_system *s, tobi_error *err);
 /* Writes particles.near_body, if there is one. After cutting pairs. */
 void tobi_boundary_mark_near_body(struct tobi_system *s);
 

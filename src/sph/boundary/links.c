@@ -332,7 +332,8 @@ int64_t tobi_boundary_links_bytes(const tobi_boundary_links *n)
            n->bins_capacity*(int64_t)sizeof *n->bins + n->start_capacity*(int64_t)sizeof *n->bin_start +
            n->point_capacity*(int64_t)(sizeof *n->point + TOBI_POINT_ROWS*sizeof **n->point_row) +
            n->row_capacity*(int64_t)sizeof *n->row +
-           n->found_capacity*(int64_t)sizeof *n->found + n->hit_capacity*(int64_t)sizeof *n->hit;
+           n->found_capacity*(int64_t)sizeof *n->found + n->hit_capacity*(int64_t)sizeof *n->hit +
+           n->mark_capacity;
 }
 
 void tobi_boundary_links_free(tobi_boundary_links *n)
@@ -353,6 +354,7 @@ void tobi_boundary_links_free(tobi_boundary_links *n)
     tobi_array_free(n->row);
     tobi_array_free(n->found);
     tobi_array_free(n->hit);
+    tobi_array_free(n->cut_mark);
     tobi_body_tree_free(&n->tree);
     memset(n, 0, sizeof *n);
 }

@@ -50,6 +50,8 @@ typedef struct tobi_boundary_links {
     int64_t row_room[TOBI_POINT_ROWS];
     int64_t bins_capacity, start_capacity, point_capacity, row_capacity, found_capacity;
     int64_t hit_capacity;
+    uint8_t *cut_mark;        /* of each group of the neighbour list, see pairs.c                     */
+    int64_t mark_capacity;
 } tobi_boundary_links;
 
 /* The particle's entry for an earlier body, NULL = none. */

@@ -128,10 +128,22 @@ static double trace_of_pair(const tobi_smoothing_constants *c, const int32_t fix
            c->dimension;
 }
 
-static int32_t *list_of(const tobi_cells *c, int64_t i, int *count)
+/* Marks of pairs that a body separates, a bit for each place of the list of row i, a byte for each group. */
+static uint8_t *marks_of(const tobi_system *s, int64_t i)
 {
-    *count = 8*c->list_groups[i];
-    return c->list + 8*(int64_t)c->list_start[i];
+    return sph_of(s)->links.cut_mark + s->cells.list_start[i];
+}
+
+static int has_mark(const tobi_system *s, int64_t i, int k)
+{
+    return __atomic_load_n(&marks_of(s, i)[k/8], __ATOMIC_RELAXED) >> k%8 & 1;
+}
+
+/* Marks of a row are its own: others only read them. */
+static void set_mark(const tobi_system *s, int64_t i, int k)
+{
+    uint8_t *mark = &marks_of(s, i)[k/8];
+    __atomic_store_n(mark, (uint8_t)(*mark | 1 << k%8), __ATOMIC_RELAXED);
 }
 
 /* The particle's last link if k is that: particles are visited by their last links, once each. */
@@ -158,7 +170,7 @@ static int find_hiding(const tobi_system *s, int64_t i, tobi_hiding *v)
     return 1;
 }
 
-/* Marks pairs that a body separates, where they stand in the list of the lower row, by ~j for j. */
+/* Marks pairs that a body separates, where they stand in the list of the lower row. */
 static void ask_pairs(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
@@ -170,15 +182,17 @@ static void ask_pairs(const void *view, int64_t begin, int64_t end)
         tobi_boundary_link *own = last_of(s, k);
         if (!own) continue;
         const int32_t i = own->particle;
+        int32_t unpacked[TOBI_LIST_LIMIT];
         int count;
-        int32_t *list = list_of(&s->cells, i, &count);
+        const int32_t *list = tobi_cells_neighbors(&s->cells, i, &count, unpacked);
         const int few = find_hiding(s, i, &v);
+        memset(marks_of(s, i), 0, (size_t)count/8);
         for (int g = 0; g < count; g += 8)
             for (unsigned left = few ? loops->may_hide(&v, i, list + g) : 0xFF; left; left &= left - 1) {
                 const int at = g + tobi_lowest_bit(left);
                 const int32_t j = list[at];
                 if (j <= i || !may_separate(s, i, j) || !separated(s, i, j)) continue;
-                list[at] = ~j;
+                set_mark(s, i, at);
                 __atomic_store_n(&own->cut, 1, __ATOMIC_RELAXED);
                 __atomic_store_n(&sph_of(s)->links.link[f->last_link[j]].cut, 1, __ATOMIC_RELAXED);
             }
@@ -188,21 +202,24 @@ static void ask_pairs(const void *view, int64_t begin, int64_t end)
 static int is_marked(const tobi_system *s, int32_t i, int32_t j)
 {
     const int32_t k = sph_fields_of(&s->particles)->last_link[i];
+    int32_t unpacked[TOBI_LIST_LIMIT];
     int count;
-    const int32_t *list = list_of(&s->cells, i, &count);
     if (k < 0 || !sph_of(s)->links.link[k].cut) return 0;
+    const int32_t *list = tobi_cells_neighbors(&s->cells, i, &count, unpacked);
     for (int g = 0; g < count; g++)
-        if (__atomic_load_n(&list[g], __ATOMIC_RELAXED) == ~j) return 1;
+        if (list[g] == j) return has_mark(s, i, g);
     return 0;
 }
 
-/* The list of the particle i whose last link is k, where there are pairs to cut; else NULL. */
-static int32_t *list_to_cut(const tobi_system *s, int64_t k, int32_t *i, int *count)
+/* The list of the particle i whose last link is k, where there are pairs to cut; else of no length. */
+static const int32_t *list_to_cut(const tobi_system *s, int64_t k, int32_t *i, int *count,
+                                  int32_t unpacked[TOBI_LIST_LIMIT])
 {
     const tobi_boundary_link *own = last_of(s, k);
+    *count = 0;
     if (!own || !own->cut) return NULL;
     *i = own->particle;
-    return list_of(&s->cells, *i, count);
+    return tobi_cells_neighbors(&s->cells, *i, count, unpacked);
 }
 
 /* Marks them in the list of the higher row, too. */
@@ -210,13 +227,11 @@ static void answer_pairs(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     for (int64_t k = begin; k < end; k++) {
-        int32_t i;
-        int count = 0;
-        int32_t *list = list_to_cut(s, k, &i, &count);
-        for (int g = 0; g < count; g++) {
-            const int32_t j = list[g];
-            if (j >= 0 && j < i && is_marked(s, j, i)) __atomic_store_n(&list[g], ~j, __ATOMIC_RELAXED);
-        }
+        int32_t i, unpacked[TOBI_LIST_LIMIT];
+        int count;
+        const int32_t *list = list_to_cut(s, k, &i, &count, unpacked);
+        for (int g = 0; g < count; g++)
+            if (list[g] < i && is_marked(s, list[g], i)) set_mark(s, i, g);
     }
 }
 
@@ -226,31 +241,33 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
     tobi_boundary_links *n = &sph_of(s)->links;
     int64_t cut = 0;
     for (int64_t k = begin; k < end; k++) {
-        int32_t i;
-        int count = 0;
-        int32_t *list = list_to_cut(s, k, &i, &count);
+        int32_t i, unpacked[TOBI_LIST_LIMIT];
+        int count;
+        const int32_t *list = list_to_cut(s, k, &i, &count, unpacked);
         for (int g = 0; g < count; g++) {
-            if (list[g] >= 0) continue;
+            if (!has_mark(s, i, g)) continue;
             int32_t fixed[3];
-            subtract(s, i, ~list[g], fixed);
+            subtract(s, i, list[g], fixed);
             n->entry[k].hidden += trace_of_pair(&s->smoothing, fixed, s->box.to_fixed);
-            list[g] = i;
+            tobi_cells_cut(&s->cells, i, g);
             cut++;
         }
     }
     __atomic_fetch_add(&n->cut_pairs, cut, __ATOMIC_RELAXED);      /* whole: any order gives the same */
 }
 
-void tobi_boundary_cut_pairs(tobi_system *s)
+tobi_status tobi_boundary_cut_pairs(tobi_system *s, tobi_error *err)
 {
     tobi_boundary_links *n = &sph_of(s)->links;
     const int threads = s->sim->exec.threads;
+    TOBI_TRY(tobi_boundary_grow(&n->cut_mark, &n->mark_capacity, s->cells.list_used/8, err));
     tobi_loop(threads, s->particles.count, 0, find_distances, s);
     n->cut_pairs = 0;
     tobi_loop(threads, n->count, 64, ask_pairs, s);
     tobi_loop(threads, n->count, 512, answer_pairs, s);
     tobi_loop(threads, n->count, 512, cut_pairs, s);
     n->cut_pairs /= 2;      /* each was seen from both sides */
+    return TOBI_OK;
 }
 
 static void mark_near_body(const void *view, int64_t begin, int64_t end)
@@ -260,8 +277,9 @@ static void mark_near_body(const void *view, int64_t begin, int64_t end)
     for (int64_t k = begin; k < end; k++) {
         const tobi_boundary_link *own = last_of(s, k);
         if (!own) continue;
+        int32_t unpacked[TOBI_LIST_LIMIT];
         int count;
-        const int32_t *list = list_of(&s->cells, own->particle, &count);
+        const int32_t *list = tobi_cells_neighbors(&s->cells, own->particle, &count, unpacked);
         for (int g = 0; g < count; g++) __atomic_store_n(&near_body[list[g]], 1, __ATOMIC_RELAXED);
         __atomic_store_n(&near_body[own->particle], 1, __ATOMIC_RELAXED);
     }

@@ -348,10 +348,12 @@ TOBI_FN void isph_walk_take_all(isph_walk *w, const isph_view *v, int64_t i, int
     isph_ask_begin(v, i, &w->reflections, &asking);
     isph_walk_take_pair(w, i);
     for (int k = 0; k < 8*v->list_groups[i]; k += TOBI_LANES) {
-        isph_ask_pairs(v, i, &asking, v->list + w->first + k, &found);
+        int32_t unpacked[8];
+        const int32_t *near = tobi_list_load(v->list, v->list_far, i, w->first + k, TOBI_LANES, unpacked);
+        isph_ask_pairs(v, i, &asking, near, &found);
         for (unsigned left = found.single | found.several; left; left &= left - 1) {
             const int at = tobi_lowest_bit(left);
-            const int32_t j = v->list[w->first + k + at];
+            const int32_t j = near[at];
             w->pair = k + at;
             if (found.single >> at & 1) isph_walk_take_single(w, &asking, &found, at, j);
             else isph_walk_take_pair(w, j);
@@ -434,7 +436,8 @@ TOBI_FN void isph_load_group(const isph_view *v, int64_t i, int64_t first, int64
     const isph_image_group *g = &v->group[group].images;
     lane_int x, y, z;
     for (int k = 0; k < TOBI_LANES; k++) {
-        m->index[k] = g->neighbor[k] < 0 ? (int32_t)i : v->list[first + g->neighbor[k]];
+        m->index[k] = g->neighbor[k] < 0 ? (int32_t)i
+                                          : tobi_list_at(v->list, v->list_far, i, first + g->neighbor[k]);
         m->entry[k] = g->neighbor[k] < 0 ? -1 : first + g->neighbor[k];
     }
     n->j = m->index;

@@ -410,11 +410,13 @@ TOBI_FN void isph_multiply(const isph_view *v, int64_t i, double *totals)
 {
     const double own = v->in[i];
     const int64_t first = 8*(int64_t)v->list_start[i];
-    const int32_t *j = v->list + first;
+    const int count = 8*v->list_groups[i];
+    int32_t unpacked[TOBI_LIST_LIMIT];
+    const int32_t *j = tobi_list_load(v->list, v->list_far, i, first, count, unpacked);
     const float *a = v->entry + first;
     double s[8] = {0, 0, 0, 0, 0, 0, 0, 0};
     (void)totals;
-    for (int g = 0; g < 8*v->list_groups[i]; g += 8)
+    for (int g = 0; g < count; g += 8)
         for (int k = 0; k < 8; k++) s[k] += a[g + k]*(own - v->in[j[g + k]]);
     v->out[i] = v->excess[i]*own + (((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7])));
 }

@@ -34,8 +34,8 @@
         for (int64_t i = begin; i < end; i++) {                                                     \
             const int64_t first = 8*(int64_t)v->list_start[i];                                      \
             const int groups = 8*v->list_groups[i];                                                 \
-            const int32_t *j = v->list + first;                                                     \
-            int32_t self[8];                                                                        \
+            int32_t self[8], unpacked[TOBI_LIST_LIMIT];                                             \
+            const int32_t *j = tobi_list_load(v->list, v->list_far, i, first, groups, unpacked);    \
             K##_acc acc;                                                                            \
             tobi_neighbors near;                                                                    \
             isph_image image;                                                                       \

@@ -20,7 +20,7 @@ static void flood(const isph_solver *m, int32_t *queue, int64_t count, uint8_t m
     for (int64_t at = 0; at < count; at++) {
         const int64_t i = queue[at], first = 8*(int64_t)v->list_start[i];
         for (int64_t k = first; k < first + 8*v->list_groups[i]; k++) {
-            const int32_t j = v->list[k];
+            const int32_t j = tobi_list_at(v->list, v->list_far, i, k);
             if (!(v->entry[k] > 0) || m->pocket[j] != UNKNOWN) continue;
             m->pocket[j] = mark;
             queue[count++] = j;

@@ -147,6 +147,7 @@ tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
     v->fluid_count = s->fluid_count;
     v->pressure = f->pressure;
     v->list = s->cells.list;
+    v->list_far = s->cells.list_far;
     v->list_start = s->cells.list_start;
     v->list_groups = s->cells.list_groups;
     v->dt = s->dt;
@@ -259,7 +260,7 @@ static void take_held(const void *view, int64_t begin, int64_t end, double *tota
         const int64_t first = 8*(int64_t)v->list_start[i];
         double sum = 0, less = 0;
         for (int k = 0; k < 8*v->list_groups[i]; k++) {
-            const int32_t j = v->list[first + k];
+            const int32_t j = tobi_list_at(v->list, v->list_far, i, first + k);
             float *a = &v->entry[first + k];
             if (v->held[j].w < 0) sum += *a*(double)v->pressure[j];
             if (!(v->held[j].w > 0)) continue;
@@ -304,7 +305,8 @@ void isph_solver_account(const isph_solver *m, tobi_account *a)
     tobi_account_add(a, "grid of the solver", tobi_multigrid_bytes(&m->grid));
     tobi_account_add(a, "images at bodies", m->view.group_room*(int64_t)sizeof *m->view.group);
     tobi_account_add(a, "images at bodies",
-                     m->mirrors*(int64_t)(sizeof *m->mirror + sizeof *m->brief + sizeof *m->view.first_group));
+                     m->mirrors*(int64_t)(sizeof *m->mirror + sizeof *m->brief +
+                                          sizeof *m->view.first_group));
     tobi_account_add(a, "particles beside bodies", isph_forces_bytes(m));
 }
 

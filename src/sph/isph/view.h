@@ -107,7 +107,8 @@ typedef struct isph_view {
     tobi_record *record;             /* w: scale while rows are made, then the pressure, Pa         */
     tobi_float4 *velocity, *accel;
     float *pressure;                 /* Pa                                                          */
-    const int32_t *list;
+    const void *list;                /* exec/list.h                                                 */
+    const int32_t *list_far;
     const uint32_t *list_start;
     const uint16_t *list_groups;
     const int32_t *last_link;        /* last mirror of each particle, < 0: none; NULL: no bodies    */
