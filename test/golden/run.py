@@ -46,20 +46,20 @@ def hash_files(folder):
     return total.hexdigest()[:16]
 
 
-def run(program, scene, variant):
+def run(program, scene, variant, times=()):
+    """Hashes and times of outputs; those are needed for two parts."""
     name, env, threads, parts = variant
     out = pathlib.Path(scene.stem + "-" + name.replace(" ", "_").replace(",", ""))
     shutil.rmtree(out, ignore_errors=True)
     always = [str(scene), "--quiet", "--threads", str(threads), "--out", str(out), "--set", "output.compression=none"]
-    call(program, env, "run", *always)
+    call(program, env, "run", *always, *(["--until", times[1]] if parts else []))
     if parts:
-        with (out / "history.csv").open(newline="") as file:
-            times = [row["time"] for row in csv.DictReader(file)]
-        call(program, env, "run", *always, "--force", "--until", times[1])
         call(program, env, "resume", str(out), "--quiet", "--until", times[-1])
+    with (out / "history.csv").open(newline="") as file:
+        times = [row["time"] for row in csv.DictReader(file)]
     result = {"state": json.loads((out / "summary.json").read_text())["state_hash"], "files": hash_files(out)}
     shutil.rmtree(out)
-    return result
+    return result, times
 
 
 def read_table():
@@ -109,7 +109,9 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         for scene in scenes:
             names = list(variants(options.every))
-            results = list(zip([v[0] for v in names], pool.map(lambda v, s=scene: run(program, s, v), names)))
+            first, times = run(program, scene, names[0])
+            others = pool.map(lambda v, s=scene, t=times: run(program, s, v, t)[0], names[1:])
+            results = list(zip([v[0] for v in names], [first, *others]))
             found[scene.stem] = results[0][1]
             faults += compare(scene, found[scene.stem] if options.write else table.get(scene.stem), results)
     if faults:
