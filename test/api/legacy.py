@@ -57,9 +57,12 @@ def read_png(path):
     for y in range(height):
         how, line = raw[y*(3*width + 1)], bytearray(raw[y*(3*width + 1) + 1:(y + 1)*(3*width + 1)])
         assert how in (0, 1, 2, 4), "a filter that this test does not know"
-        for k in range(3*width if how else 0):
-            left, corner = (line[k - 3], above[k - 3]) if k > 2 else (0, 0)
-            line[k] = (line[k] + (left if how == 1 else above[k] if how == 2 else paeth(left, above[k], corner))) & 255
+        if how == 2:
+            line = bytes([(a + b) & 255 for a, b in zip(line, above)])
+        elif how and (how == 1 or any(line) or any(above)):
+            for k in range(3*width):
+                left, corner = (line[k - 3], above[k - 3]) if k > 2 else (0, 0)
+                line[k] = (line[k] + (left if how == 1 else paeth(left, above[k], corner))) & 255
         rows.append(line)
         above = line
     return rows
@@ -73,7 +76,9 @@ def is_color(row, x, most, ratio=1.8):
 
 def find(rows, most, ratio=1.8):
     """The box around pixels of a colour: x0, y0, x1, y1; None without any."""
-    spots = [(x, y) for y, row in enumerate(rows) for x in range(WIDTH) if is_color(row, x, most, ratio)]
+    a, b = (k for k in range(3) if k != most)
+    spots = [(x, y) for y, row in enumerate(rows)
+             for x, (p, q, r) in enumerate(zip(row[most::3], row[a::3], row[b::3])) if p > 60 and p > ratio*q and p > ratio*r]
     if not spots:
         return None
     return (min(s[0] for s in spots), min(s[1] for s in spots), max(s[0] for s in spots), max(s[1] for s in spots))
