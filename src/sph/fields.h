@@ -30,6 +30,8 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
     X(float,       TOBI_F32, 1, surface_depth,     SPH_SEE, 0, "m", "of the free surface here, 0 = none") \
     X(tobi_float4, TOBI_F32, 4, moment,       SPH_SEE | SPH_FORCES, \
       SPH_NEED_WETTED | SPH_NEED_FILTER, "1/m", "eq. (13b)") \
+    X(tobi_float4, TOBI_F32, 4, roughness,    SPH_FORCES, SPH_NEED_WETTED | SPH_NEED_FILTER, "1/m3/s", \
+      "R, eq. (13b)") \
     X(float,       TOBI_F32, 1, target_divergence, SPH_FORCES | SPH_SOLVE, SPH_NEED_WETTED, "1/s", \
       "eq. (10d)") \
     X(float,       TOBI_F32, 1, wetness,      SPH_AFTER_SEEING, 0, "1", "eq. (6b)") \

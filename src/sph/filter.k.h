@@ -1,7 +1,8 @@
-/* The filter of full vessels, eq. (13b) of docs/theory/dfsph.md: as that of (13), but blind to linear
-   flows, which L sees where neighbours are in disorder or, beside walls, missing:
-   L' v_i = sum_j V F (1 - c_i . x_ji) (v_j - v_i), and v -= dt k L'^T L' v, so that momentum is exact.
-   Two passes: accel = L' v, then the rest. */
+/* The filter of full vessels and of isph, eq. (13b) of docs/theory/dfsph.md: blind to linear flows, which L
+   sees where neighbours are in disorder or, beside walls, missing, and to what L' v has in common with its
+   neighbours, as in a parabolic profile:
+   L' v_i = sum_j V F (1 - c_i . x_ji) (v_j - v_i), R = -L L' v, and v -= dt k L'^T R. It takes energy and no
+   momentum. Three passes: accel = L' v, roughness = R, then the rest. */
 #pragma once
 #include "exec/pairs.h"
 #include "sph/sph.k.h"
@@ -32,10 +33,29 @@ TOBI_FN void sph_filter_finish(const sph_view *v, int64_t i, sph_filter_acc *a, 
     sph_laplacian_finish(v, i, &a->sum, totals);
 }
 
+/* roughness = what L' v, in accel, has beyond the mean of its neighbours. */
+typedef sph_laplacian_acc sph_filter_compare_acc;
+TOBI_FN void sph_filter_compare_start(const sph_view *v, int64_t i, sph_laplacian_acc *a)
+{
+    sph_laplacian_begin(a, v->accel, i);
+}
+TOBI_FN void sph_filter_compare_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
+                                     sph_laplacian_acc *a, const int shape)
+{
+    (void)i;
+    sph_laplacian_add(v, n, a, v->accel, shape);
+}
+TOBI_FN void sph_filter_compare_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a, double *totals)
+{
+    const tobi_float4 sum = lane_sum4(a->ax, a->ay, a->az, lane_set(0));
+    (void)totals;
+    v->roughness[i] = (tobi_float4){-v->slope*sum.x, -v->slope*sum.y, -v->slope*sum.z, 0};
+}
+
 typedef sph_filter_acc sph_filter_kick_acc;
 TOBI_FN void sph_filter_kick_start(const sph_view *v, int64_t i, sph_filter_acc *a)
 {
-    sph_filter_begin(v, i, a, v->accel);
+    sph_filter_begin(v, i, a, v->roughness);
 }
 TOBI_FN void sph_filter_kick_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_filter_acc *a,
                            const int shape)
@@ -46,7 +66,7 @@ TOBI_FN void sph_filter_kick_pair(const sph_view *v, int64_t i, const tobi_neigh
     lane own = f*(1 + (a->x*n->dx + a->y*n->dy + a->z*n->dz)),
          other = f*(1 - (cx*n->dx + cy*n->dy + cz*n->dz));
     (void)i;
-    lane_load_float4(v->accel, n->j, &x, &y, &z, &w);
+    lane_load_float4(v->roughness, n->j, &x, &y, &z, &w);
     a->sum.ax += other*x - own*a->sum.vx;
     a->sum.ay += other*y - own*a->sum.vy;
     a->sum.az += other*z - own*a->sum.vz;

@@ -16,6 +16,9 @@ static const double CORE = 0.9;
 static const float PUSH = 0.25f;
 /* Of the mean diagonal: two particles 1.5 d apart that have no other neighbour. */
 static const double ISOLATED = 0.01;
+/* Of eq. (13b), over the sum of V F: -L is at most 1.3 of it for what changes from particle to particle. The
+   filter then takes up to 0.82 of that in a step that motion allows, 2 would be unstable. */
+static const float SHARPNESS = 1.5f;
 /* Fewer are worked on one after another: large bodies have parallel loops of their own. */
 enum { FEW_BODIES = 8 };
 
@@ -57,7 +60,7 @@ static void bind_stage(sph_view *v, const sph_fields *f)
     v->wetness = f->wetness; v->damped = f->damped;
     v->precondition = f->precondition; v->residual = f->residual; v->product = f->product;
     v->delta = f->delta;
-    v->moment = f->moment; v->target_divergence = f->target_divergence;
+    v->moment = f->moment; v->roughness = f->roughness; v->target_divergence = f->target_divergence;
     v->viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
                                     f->viscous_direction, f->viscous_product, f->viscous_inverse,
                                     f->viscous_turning, f->viscous_lack, NULL, 0, f->apparent};
@@ -315,6 +318,8 @@ static void apply_filter(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
     if (!(v->filter > 0)) return;
     launch(s, v, k->sph_filter, NULL);
+    launch(s, v, k->sph_filter_compare, NULL);
+    v->filter *= SHARPNESS/(float)s->smoothing.rate;
     launch(s, v, k->sph_filter_kick, NULL);
     v->filter = 0;
 }

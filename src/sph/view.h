@@ -40,6 +40,7 @@ typedef struct sph_view {
     float *TOBI_RESTRICT precondition, *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
     float *TOBI_RESTRICT target_divergence;   /* with `exact`; moment with `blind`                    */
     tobi_float4 *TOBI_RESTRICT moment;
+    tobi_float4 *TOBI_RESTRICT roughness;     /* R, eq. (13b) */
     sph_viscous_fields viscous;
     tobi_float4 *TOBI_RESTRICT phase, *TOBI_RESTRICT interface;   /* NULL with one fluid, phases.k.h */
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
@@ -92,7 +93,7 @@ typedef struct sph_view {
     tobi_reference reference, reference_before;           /* the second: what `pressure` still refers to    */
     float speed_cap;                          /* m/s */
     float smooth;                             /* share of the averaged pressure in the warm start */
-    float filter;                             /* coefficient of L L v, m4/s                      */
+    float filter;                             /* of (13), m4/s; while (13b) acts of that, m6/s   */
     float mean;                               /* of residual, product, direction or result    */
     float isolated;                           /* m/kg: a smaller diagonal carries no pressure   */
     float core;                               /* m: pairs nearer than this are pushed apart     */

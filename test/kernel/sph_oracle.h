@@ -15,7 +15,7 @@ enum {
     VISCOUS, VISCOUS_EXPECTED = VISCOUS + 3, VISCOUS_RESIDUAL = VISCOUS_EXPECTED + 3,
     VISCOUS_DIRECTION = VISCOUS_RESIDUAL + 3, VISCOUS_PRODUCT = VISCOUS_DIRECTION + 3,
     VISCOUS_INVERSE = VISCOUS_PRODUCT + 3, TURNING = VISCOUS_INVERSE + 3, LACK = TURNING + 4,
-    APPARENT = LACK + 4, SHEAR_RATE, COLUMNS
+    APPARENT = LACK + 4, SHEAR_RATE, ROUGH, COLUMNS = ROUGH + 3
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
@@ -28,7 +28,7 @@ static const char *const column_name[COLUMNS] = {
     "viscous rx", "viscous ry", "viscous rz", "viscous qx", "viscous qy", "viscous qz",
     "viscous Aqx", "viscous Aqy", "viscous Aqz", "viscous Mx", "viscous My", "viscous Mz",
     "Jxx", "Jyy", "Jzz", "Jxy", "Jyz", "Jzx", "wall's lack", "1/trace",
-    "apparent viscosity", "shear rate"
+    "apparent viscosity", "shear rate", "roughness x", "roughness y", "roughness z"
 };
 
 enum { TABLE = 4000 };

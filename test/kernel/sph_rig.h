@@ -104,7 +104,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->stretch = k->along ? f->stretch : NULL;
     v->shear = f->shear;
     v->near_body = f->near_body; v->last_link = f->last_link; v->full = v->exact = v->blind = k->along == 1;
-    v->target_divergence = f->target_divergence; v->moment = f->moment;
+    v->target_divergence = f->target_divergence; v->moment = f->moment; v->roughness = f->roughness;
     v->normal = f->normal; v->capillary = f->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
     v->band_depth = (float)(0.6*g->c.spacing);
@@ -293,6 +293,7 @@ static void rig_get(const rig *g, row *s)
         s[i][WET] = f->wetness[i]; s[i][MEAN] = f->mean[i]; s[i][DROP] = f->surface_depth[i];
         s[i][MIDWAY] = f->target_divergence[i]; s[i][DAMPED] = f->damped[i];
         for (int a = 0; a < 3; a++) s[i][MOMENT + a] = (&f->moment[i].x)[a];
+        for (int a = 0; a < 3; a++) s[i][ROUGH + a] = (&f->roughness[i].x)[a];
     }
 }
 
@@ -316,6 +317,7 @@ static void rig_set(rig *g, const row *s)
         f->surface_depth[i] = (float)s[i][DROP];
         f->target_divergence[i] = (float)s[i][MIDWAY]; f->damped[i] = (float)s[i][DAMPED];
         for (int a = 0; a < 3; a++) (&f->moment[i].x)[a] = (float)s[i][MOMENT + a];
+        for (int a = 0; a < 3; a++) (&f->roughness[i].x)[a] = (float)s[i][ROUGH + a];
         for (int a = 0; a < 4; a++) (&f->wall[i].x)[a] = (float)s[i][WALL + a];
         for (int a = 0; a < 4; a++) (&f->viscous_turning[i].x)[a] = (float)s[i][TURNING + a];
         for (int a = 0; a < 4; a++) (&f->viscous_lack[i].x)[a] = (float)s[i][LACK + a];

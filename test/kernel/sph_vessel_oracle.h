@@ -56,15 +56,26 @@ static void oracle_filter(const oracle *o, const row *in, row *out, double *t)
     }
 }
 
-/* v -= dt k times the transpose of L'. */
+/* R = -L L' v. */
+static void oracle_filter_compare(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double ll[3];
+        laplacian(o, in, i, ACC, ll);
+        for (int a = 0; a < 3; a++) out[i][ROUGH + a] = -ll[a];
+    }
+}
+
+/* v -= dt k times the transpose of L', on R. */
 static void oracle_filter_kick(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
     for (int i = 0; i < o->count; i++)
         EACH_NEIGHBOUR(o, in, i, j, x, r)
             for (int a = 0; a < 3; a++)
-                out[i][VEL + a] -= o->dt*o->filter*(weigh_by_moment(o, in, j, x, r, -1)*in[j][ACC + a] -
-                                                    weigh_by_moment(o, in, i, x, r, 1)*in[i][ACC + a]);
+                out[i][VEL + a] -= o->dt*o->filter*(weigh_by_moment(o, in, j, x, r, -1)*in[j][ROUGH + a] -
+                                                    weigh_by_moment(o, in, i, x, r, 1)*in[i][ROUGH + a]);
 }
 
 /* Eq. (21c). */

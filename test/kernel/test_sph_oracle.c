@@ -25,6 +25,7 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_kick_unfiltered oracle_kick_unfiltered
 #define oracle_sph_target_divergence oracle_midway
 #define oracle_sph_filter oracle_filter
+#define oracle_sph_filter_compare oracle_filter_compare
 #define oracle_sph_filter_kick oracle_filter_kick
 #define oracle_sph_wall_force oracle_wall_force
 #define oracle_sph_advance oracle_advance

@@ -187,6 +187,95 @@ static void bodies_take_the_torque(void **state)
     }
 }
 
+/* A channel of ten layers at a Reynolds number of 100, after 0.4 H^2/nu: the filter must not brake it. Mean
+   velocity over that of theory, g H^2/(12 nu). */
+static void filters_do_not_brake(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 3; n++) {
+        const char *method = methods[n > 0];
+        char text[600];
+        double sum = 0;
+        snprintf(text, sizeof text,
+                 "{\"dimension\": 2, \"domain\": {\"min\": [0, 0], \"max\": [0.01, 0.01],"
+                 " \"walls\": {\"x\": \"periodic\", \"y\": \"no-slip\"}}, \"gravity\": [12, 0],"
+                 " \"spacing\": 0.001, \"end_time\": 0.4, \"method\": \"%s\","
+                 " \"implicit_viscosity\": %s,"
+                 " \"fluids\": [{\"name\": \"oil\", \"viscosity\": 0.1, \"fill\": [{\"velocity\": [1, 0],"
+                 " \"box\": {\"min\": [0, 0], \"max\": [0.01, 0.01]}}]}]}", method, n > 1 ? "true" : "false");
+        tobi_world *w = make(text);
+        OK(tobi_world_advance(w, 0.4, NULL, &err));
+        const tobi_particles *p = &w->system[0].particles;
+        for (int64_t i = 0; i < p->count; i++) sum += p->velocity[i].x/(double)p->count;
+        printf("%s, %s: channel of ten layers, Re 100: flow over theory %.3f\n", method,
+               n > 1 ? "implicit" : "explicit", sum);
+        if (!(fabs(sum - 1) < 0.06)) fail_msg("%s: wrong flow", method);
+        tobi_world_destroy(w);
+    }
+}
+
+/* Energy over that of the start of a thread without weight, in 0.01 s, if a stress of k nu du/dy along it is
+   all that acts: 20 cm long, drawn out at 1/s, 0.1 m2/s. */
+static double thread_by_theory(double k)
+{
+    enum { CELLS = 100 };
+    double u[CELLS], left = 0, all = 0;
+    const double size = 0.1/CELLS, step = 0.2*size*size/(k*0.1);
+    for (int c = 0; c < CELLS; c++) u[c] = (c + 0.5)*size;
+    for (int c = 0; c < CELLS; c++) all += u[c]*u[c];
+    for (double time = 0; time < 0.01; time += step) {
+        double below = 2*u[0];
+        for (int c = 0; c < CELLS; c++) {
+            const double above = c < CELLS - 1 ? u[c + 1] - u[c] : 0;
+            u[c] += 0.2*(above - below);
+            below = above;
+        }
+    }
+    for (int c = 0; c < CELLS; c++) left += u[c]*u[c];
+    return left/all;
+}
+
+/* In two dimensions the stress of a thread that grows thin is 4 nu du/dy (Trouton). */
+static double thread_left(const char *method)
+{
+    enum { ROWS = 40, ROOM = 160*ROWS + 600 };
+    char *text = malloc(ROOM);
+    int n = snprintf(text, ROOM,
+                     "{\"dimension\": 2, \"domain\": {\"min\": [0, -0.2], \"max\": [0.2, 0.2]},"
+                     " \"gravity\": [0, 0], \"spacing\": 0.005, \"end_time\": 0.01, \"method\": \"%s\","
+                     " \"implicit_viscosity\": true, \"time_step_max\": 2e-4,"
+                     " \"fluids\": [{\"name\": \"honey\", \"viscosity\": 100, \"fill\": [", method);
+    for (int k = 0; k < ROWS; k++) {
+        const double y = 0.005*k - 0.1;
+        n += snprintf(text + n, (size_t)(ROOM - n),
+                      "%s{\"box\": {\"min\": [0.09, %.3f], \"max\": [0.11, %.3f]},"
+                      " \"velocity\": [0, %.4f]}",
+                      k ? ", " : "", y, y + 0.005, y + 0.0025);
+    }
+    snprintf(text + n, (size_t)(ROOM - n), "]}]}");
+    tobi_world *w = make(text);
+    free(text);
+    const tobi_particles *p = &w->system[0].particles;
+    double energy[2] = {0, 0};
+    for (int late = 0; late < 2; late++) {
+        if (late) OK(tobi_world_advance(w, 0.01, NULL, &err));
+        for (int64_t i = 0; i < p->count; i++) energy[late] += p->velocity[i].y*p->velocity[i].y;
+    }
+    tobi_world_destroy(w);
+    return energy[1]/energy[0];
+}
+
+static void threads_resist_to_be_drawn_out(void **state)
+{
+    const double theory = log(thread_by_theory(4));
+    (void)state;
+    for (int m = 0; m < 2; m++) {
+        const double seen = log(thread_left(methods[m]))/theory;
+        printf("%s: a thread of four layers is braked by %.3f of theory\n", methods[m], seen);
+        if (!(fabs(seen - 1) < 0.1)) fail_msg("%s: wrong brake", methods[m]);
+    }
+}
+
 static uint64_t hash_of(const char *method, int threads)
 {
     tobi_world *w = make_patch(method, 1, threads);
@@ -209,6 +298,8 @@ int main(void)
         cmocka_unit_test(the_field_is_that_of_the_step),
         cmocka_unit_test(the_step_does_not_count),
         cmocka_unit_test(bodies_take_the_torque),
+        cmocka_unit_test(filters_do_not_brake),
+        cmocka_unit_test(threads_resist_to_be_drawn_out),
         cmocka_unit_test(threads_do_not_matter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
