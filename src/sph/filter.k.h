@@ -7,13 +7,14 @@
 #include "exec/pairs.h"
 #include "sph/sph.k.h"
 
-typedef struct sph_filter_acc { sph_laplacian_acc sum; lane x, y, z; } sph_filter_acc;
+typedef struct sph_filter_acc { sph_laplacian_acc sum; lane x, y, z, held; } sph_filter_acc;
 
 TOBI_FN void sph_filter_begin(const sph_view *v, int64_t i, sph_filter_acc *a, const tobi_float4 *field)
 {
     sph_laplacian_begin(&a->sum, field, i);
     tobi_float4 c = v->moment[i];
     a->x = lane_set(c.x); a->y = lane_set(c.y); a->z = lane_set(c.z);
+    a->held = lane_set(0);
 }
 TOBI_FN void sph_filter_start(const sph_view *v, int64_t i, sph_filter_acc *a)
 {
@@ -27,10 +28,16 @@ TOBI_FN void sph_filter_pair(const sph_view *v, int64_t i, const tobi_neighbors 
     f *= 1 + (a->x*n->dx + a->y*n->dy + a->z*n->dz);
     lane_load_float4(v->velocity, n->j, &x, &y, &z, &w);
     a->sum.ax += f*(x - a->sum.vx); a->sum.ay += f*(y - a->sum.vy); a->sum.az += f*(z - a->sum.vz);
+    if (!v->held) return;
+    lane_load_float4(v->held, n->j, &x, &y, &z, &w);
+    a->held += w*w;
 }
+/* Beside buffers of openings, whose velocities are given, nothing, w = 1: what a buffer does to a particle
+   the particle does not do to it, and the filter would give energy. */
 TOBI_FN void sph_filter_finish(const sph_view *v, int64_t i, sph_filter_acc *a, double *totals)
 {
     sph_laplacian_finish(v, i, &a->sum, totals);
+    if (v->held && lane_sum(a->held) > 0) v->accel[i] = (tobi_float4){0, 0, 0, 1};
 }
 
 /* roughness = what L' v, in accel, has beyond the mean of its neighbours. */
@@ -49,7 +56,8 @@ TOBI_FN void sph_filter_compare_finish(const sph_view *v, int64_t i, sph_laplaci
 {
     const tobi_float4 sum = lane_sum4(a->ax, a->ay, a->az, lane_set(0));
     (void)totals;
-    v->roughness[i] = (tobi_float4){-v->slope*sum.x, -v->slope*sum.y, -v->slope*sum.z, 0};
+    const float k = v->accel[i].w > 0 ? 0 : -v->slope;
+    v->roughness[i] = (tobi_float4){k*sum.x, k*sum.y, k*sum.z, 0};
 }
 
 typedef sph_filter_acc sph_filter_kick_acc;
