@@ -186,8 +186,7 @@ static tobi_status grow_list(tobi_cells *c, int64_t entries, tobi_error *err)
     return TOBI_OK;
 }
 
-/* Whole numbers from now on. */
-static void widen_list(tobi_cells *c)
+void tobi_cells_widen(tobi_cells *c)
 {
     tobi_array_free(c->list_far);
     c->list_far = NULL;
@@ -259,6 +258,6 @@ tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_p
         } while (last > end && 8*last <= list_room(c) && !far_apart);
         c->list_used = 8*end;
         if (last == end && !far_apart) return TOBI_OK;
-        if (far_apart) widen_list(c);
+        if (far_apart) tobi_cells_widen(c);
     }
 }

@@ -53,6 +53,8 @@ tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, cons
 /* The same after p has grown: to be called before the next sort. */
 tobi_status tobi_cells_grow(tobi_cells *c, const tobi_particles *p, tobi_error *err);
 void tobi_cells_free(tobi_cells *c);
+/* Neighbours are whole numbers from the next search on: twice the memory, and no pass unpacks them. */
+void tobi_cells_widen(tobi_cells *c);
 /* Bytes per particle, without the neighbours. */
 enum { TOBI_CELLS_ROW = sizeof(tobi_record) + sizeof(uint32_t) + sizeof(uint16_t) + sizeof(int32_t) };
 

@@ -110,6 +110,7 @@ typedef struct tobi_method {
     unsigned (*needs)(const tobi_system *s, int full);
     int planes;                                                  /* 1: it knows planes in the domain */
     double density_ratio;                                        /* largest over least of its fluids */
+    int packs_lists;                             /* 1: neighbours are 16 bits, half the memory      */
     int fills_pipes;                             /* 1: inlets and outlets may leave no free surface */
     int damps_waves;                             /* 1: waves lose height on the way                  */
     int rough_forces;                            /* 1: of a liquid on bodies and on solids they are not the

@@ -265,6 +265,7 @@ tobi_status tobi_world_start_system(tobi_world *w, tobi_system *s, tobi_error *e
     tobi_cells_free(&s->cells);
     if (!s->method->solids)
         TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, &s->particles, &w->sim.exec, err));
+    if (!s->method->packs_lists) tobi_cells_widen(&s->cells);
     if (!s->state) TOBI_TRY(s->method->create(s, err));
     s->method->memory(s, &memory);
     memory[0] = s->start_speed = tobi_world_start_speed(w, s);

@@ -455,6 +455,7 @@ const tobi_method tobi_isph = {
     .needs = list_needs,
     .max_dt = isph_choose_dt,
     .begin = isph_begin,
+    .packs_lists = 1,          /* the matrix takes most of the time, and of the memory with the lists */
     .fills_pipes = 1,
     .rough_forces = 1,
     ISPH_VERBS
