@@ -55,8 +55,9 @@ tobi_status tobi_cells_grow(tobi_cells *c, const tobi_particles *p, tobi_error *
 void tobi_cells_free(tobi_cells *c);
 /* Neighbours are whole numbers from the next search on: twice the memory, and no pass unpacks them. */
 void tobi_cells_widen(tobi_cells *c);
-/* Bytes per particle, without the neighbours. */
-enum { TOBI_CELLS_ROW = sizeof(tobi_record) + sizeof(uint32_t) + sizeof(uint16_t) + sizeof(int32_t) };
+/* Bytes per particle, without the neighbours; what list_far adds. */
+enum { TOBI_CELLS_ROW = sizeof(tobi_record) + sizeof(uint32_t) + sizeof(uint16_t),
+       TOBI_CELLS_FAR = sizeof(int32_t) };
 
 /* Wraps periodic positions, sorts all state fields by cell, fills start and the records, their w from
    `payload`, a field of p; NULL = 0. */

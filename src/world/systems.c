@@ -142,7 +142,7 @@ static unsigned needed_fields(const tobi_world *w, const tobi_system *s)
 static int64_t row_bytes(const tobi_world *w, const tobi_system *s)
 {
     return tobi_particles_row_bytes(s->method->fields, needed_fields(w, s)) +
-           (s->method->solids ? 0 : TOBI_CELLS_ROW);
+           (s->method->solids ? 0 : TOBI_CELLS_ROW + (s->method->packs_lists ? TOBI_CELLS_FAR : 0));
 }
 
 /* Beside the fields: neighbour lists and what a stopped step is taken back from, or sorting, tiles and nodes
@@ -151,7 +151,7 @@ static int64_t list_bytes(const tobi_system *s)
 {
     if (s->method->solids) return 80;
     double r = s->smoothing.h/s->smoothing.spacing;
-    return (int64_t)(2*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
+    return (int64_t)((s->method->packs_lists ? 2 : 4)*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
 }
 
 tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles,
@@ -294,7 +294,8 @@ static tobi_account account(const tobi_world *w)
     for (int k = 0; w && k < w->system_count; k++) {
         const tobi_system *s = &w->system[k];
         account_particles(&s->particles, needed_fields(w, s), &a);
-        tobi_account_add(&a, "cells", s->cells.rows*TOBI_CELLS_ROW + (s->cells.total + s->row_capacity)*4);
+        const int row = TOBI_CELLS_ROW + (s->cells.list_far ? TOBI_CELLS_FAR : 0);
+        tobi_account_add(&a, "cells", s->cells.rows*row + (s->cells.total + s->row_capacity)*4);
         tobi_account_add(&a, "neighbour lists", s->cells.list_bytes);
         if (s->method->account && s->state) s->method->account(s, &a);
     }
