@@ -85,8 +85,8 @@ double tobi_smoothing_f(int shape, int dimension, double h, double r)
 }
 
 /* Sums over lattice neighbours: kernel, that of those with x > 0, second moment xx, gradient of those with
-   x > 0, V F. */
-typedef struct lattice_sums { double w, behind, moment, slope_half, rate; } lattice_sums;
+   x > 0, V F, twice V F where i + j + k is odd. */
+typedef struct lattice_sums { double w, behind, moment, slope_half, rate, shortest; } lattice_sums;
 
 static lattice_sums sum_lattice(int shape, int dimension, double d, double h)
 {
@@ -103,6 +103,7 @@ static lattice_sums sum_lattice(int shape, int dimension, double d, double h)
                 if (r2 == 0) continue;
                 double f = v*tobi_smoothing_f(shape, dimension, h, r);
                 s.rate += f;
+                s.shortest += (i + j + k)%2 ? 2*f : 0;
                 s.moment += f*x*x;
                 if (i > 0) s.slope_half += f*x;
             }
@@ -161,6 +162,7 @@ void tobi_smoothing_init(tobi_smoothing_constants *c, int shape, int dimension, 
     c->weight_correction = 1/s.w;
     c->slope_correction = 1/s.moment;
     c->rate = s.rate*c->slope_correction;
+    c->shortest = s.shortest*c->slope_correction;
     double n = norm(shape, dimension, h)*c->volume;
     c->weight = n*c->weight_correction;
     c->slope = n*steepness(shape, h)*c->slope_correction;

@@ -11,6 +11,7 @@ typedef struct tobi_smoothing_constants {
     double weight;         /* V W = weight shape(q); sum over the lattice = 1                    */
     double slope;          /* V grad W = -slope falloff(q) dx; linear fields exact on the lattice */
     double rate;           /* lattice sum of V F, 1/m2: the scale of particle-wise differences   */
+    double shortest;       /* the same for the wave of two spacings along all axes: of V F (1 - wave)  */
     double weight_correction, slope_correction; /* against the integral norm */
     double wall_share, wall_lattice; /* at s = d/2: lambda, and what a lattice lacks there */
     double plane_scale;    /* sigma over the plain integral; also scales W at body points          */

@@ -1,20 +1,23 @@
 /* The filter of full vessels and of isph, eq. (13b) of docs/theory/dfsph.md: blind to linear flows, which L
    sees where neighbours are in disorder or, beside walls, missing, and to what L' v has in common with its
    neighbours, as in a parabolic profile:
-   L' v_i = sum_j V F (1 - c_i . x_ji) (v_j - v_i), R = -L L' v, and v -= dt k L'^T R. It takes energy and no
-   momentum. Three passes: accel = L' v, roughness = R, then the rest. */
+   L' v_i = sum_j V F (1 - c_i . x_ji) (v_j - v_i), R = -S L S L' v, and v -= dt k L'^T R. It takes energy and
+   no momentum. Three passes: accel = S L' v, roughness = R, then the rest. */
 #pragma once
 #include "exec/pairs.h"
 #include "sph/sph.k.h"
 
-typedef struct sph_filter_acc { sph_laplacian_acc sum; lane x, y, z, held; } sph_filter_acc;
+/* sum of V F over that of the lattice from which on neighbours crowd. */
+#define SPH_FILTER_CROWD 1.15f
+
+typedef struct sph_filter_acc { sph_laplacian_acc sum; lane x, y, z, all, held; } sph_filter_acc;
 
 TOBI_FN void sph_filter_begin(const sph_view *v, int64_t i, sph_filter_acc *a, const tobi_float4 *field)
 {
     sph_laplacian_begin(&a->sum, field, i);
     tobi_float4 c = v->moment[i];
     a->x = lane_set(c.x); a->y = lane_set(c.y); a->z = lane_set(c.z);
-    a->held = lane_set(0);
+    a->all = a->held = lane_set(0);
 }
 TOBI_FN void sph_filter_start(const sph_view *v, int64_t i, sph_filter_acc *a)
 {
@@ -24,7 +27,7 @@ TOBI_FN void sph_filter_pair(const sph_view *v, int64_t i, const tobi_neighbors 
                              const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
-    (void)i;
+    a->all += lane_where_equal(n->index, lane_set_int((int32_t)i), lane_set(0), f);
     f *= 1 + (a->x*n->dx + a->y*n->dy + a->z*n->dz);
     lane_load_float4(v->velocity, n->j, &x, &y, &z, &w);
     a->sum.ax += f*(x - a->sum.vx); a->sum.ay += f*(y - a->sum.vy); a->sum.az += f*(z - a->sum.vz);
@@ -32,15 +35,18 @@ TOBI_FN void sph_filter_pair(const sph_view *v, int64_t i, const tobi_neighbors 
     lane_load_float4(v->held, n->j, &x, &y, &z, &w);
     a->held += w*w;
 }
-/* Beside buffers of openings, whose velocities are given, nothing, w = 1: what a buffer does to a particle
-   the particle does not do to it, and the filter would give energy. */
+/* accel = s_i L' v, w = s_i: less than 1 where neighbours crowd, which else would be fed, and 0 beside
+   buffers of openings, whose velocities are given: a buffer would act and feel nothing. */
 TOBI_FN void sph_filter_finish(const sph_view *v, int64_t i, sph_filter_acc *a, double *totals)
 {
+    const float crowd = v->slope*lane_sum(a->all)*v->inverse_rate/SPH_FILTER_CROWD;
+    const float s = v->held && lane_sum(a->held) > 0 ? 0 : crowd > 1 ? 1/(crowd*sqrtf(crowd)) : 1;
+    tobi_float4 *out = &v->accel[i];
     sph_laplacian_finish(v, i, &a->sum, totals);
-    if (v->held && lane_sum(a->held) > 0) v->accel[i] = (tobi_float4){0, 0, 0, 1};
+    *out = (tobi_float4){s*out->x, s*out->y, s*out->z, s};
 }
 
-/* roughness = what L' v, in accel, has beyond the mean of its neighbours. */
+/* roughness = s_i times what accel has beyond the mean of its neighbours. */
 typedef sph_laplacian_acc sph_filter_compare_acc;
 TOBI_FN void sph_filter_compare_start(const sph_view *v, int64_t i, sph_laplacian_acc *a)
 {
@@ -55,8 +61,8 @@ TOBI_FN void sph_filter_compare_pair(const sph_view *v, int64_t i, const tobi_ne
 TOBI_FN void sph_filter_compare_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a, double *totals)
 {
     const tobi_float4 sum = lane_sum4(a->ax, a->ay, a->az, lane_set(0));
+    const float k = -v->slope*v->accel[i].w;
     (void)totals;
-    const float k = v->accel[i].w > 0 ? 0 : -v->slope;
     v->roughness[i] = (tobi_float4){k*sum.x, k*sum.y, k*sum.z, 0};
 }
 

@@ -16,9 +16,6 @@ static const double CORE = 0.9;
 static const float PUSH = 0.25f;
 /* Of the mean diagonal: two particles 1.5 d apart that have no other neighbour. */
 static const double ISOLATED = 0.01;
-/* Of eq. (13b), over the sum of V F: -L is at most 1.3 of it for what changes from particle to particle. The
-   filter then takes up to 0.82 of that in a step that motion allows, 2 would be unstable. */
-static const float SHARPNESS = 1.5f;
 /* Fewer are worked on one after another: large bodies have parallel loops of their own. */
 enum { FEW_BODIES = 8 };
 
@@ -101,7 +98,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     v->h = (float)c->h; v->inverse_h = (float)(1/c->h); v->shape = c->shape;
     v->weight = (float)c->weight; v->slope = (float)c->slope;
     v->wall_share = (float)c->wall_share; v->wall_lattice = (float)c->wall_lattice;
-    v->spacing = (float)c->spacing; v->volume = (float)c->volume;
+    v->spacing = (float)c->spacing; v->volume = (float)c->volume; v->inverse_rate = (float)(1/c->rate);
     v->dimension = c->dimension;
     v->open_limit = (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
     v->surface_limit = vessel == SPH_VESSEL_FULL ? -1e30f : v->open_limit;
@@ -319,7 +316,7 @@ static void apply_filter(tobi_system *s, sph_view *v, const sph_kernels *k)
     if (!(v->filter > 0)) return;
     launch(s, v, k->sph_filter, NULL);
     launch(s, v, k->sph_filter_compare, NULL);
-    v->filter *= SHARPNESS/(float)s->smoothing.rate;
+    v->filter *= (float)(4*pow(s->smoothing.rate, 2)/pow(s->smoothing.shortest, 3));
     launch(s, v, k->sph_filter_kick, NULL);
     v->filter = 0;
 }

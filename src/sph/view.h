@@ -60,6 +60,7 @@ typedef struct sph_view {
     int   shape;                              /* TOBI_SHAPE_*                                */
     float wall_share, wall_lattice;           /* eq. (5b) */
     float spacing, volume;
+    float inverse_rate;                       /* m2: 1/sum of V F on the lattice             */
     int   dimension;
     int   full;                               /* 1: a vessel without a free surface          */
     int   exact;                              /* 1: eq. (7c), (10d): linear flows are exact        */

@@ -36,7 +36,7 @@ typedef struct oracle {
     int count, dimension, shape;
     double d, h, volume, box[3];
     int periodic[3];
-    double w_scale, g_scale;             /* lattice normalisation of W and of its gradient */
+    double w_scale, g_scale, rate;       /* lattice normalisation of W and of its gradient; sum of V F */
     double behind;                       /* what a lattice lacks at a wall, of a sum of 1 */
     double lambda[TABLE + 2], sigma[TABLE + 2];
     int along;                           /* not 0: eq. (7c), or with near (7b) */
@@ -74,7 +74,7 @@ static double plane_integral(const oracle *o, double s)
 static void oracle_normalise(oracle *o)
 {
     int n = 5, nz = o->dimension == 3 ? n : 0;
-    double w = 0, moment = 0, half = 0, behind = 0;
+    double w = 0, moment = 0, half = 0, behind = 0, all = 0;
     o->volume = pow(o->d, o->dimension);
     for (int k = -nz; k <= nz; k++)
         for (int j = -n; j <= n; j++)
@@ -84,11 +84,13 @@ static void oracle_normalise(oracle *o)
                 if (i < 0) behind += o->volume*oracle_w(o, r);
                 if (r == 0) continue;
                 moment += o->volume*oracle_f(o, r)*x*x;
+                all += o->volume*oracle_f(o, r);
                 if (i > 0) half += o->volume*oracle_f(o, r)*x;
             }
     o->w_scale = 1/w;
     o->behind = behind/w;
     o->g_scale = 1/moment;
+    o->rate = all/moment;
     for (int k = 0; k <= TABLE; k++) o->sigma[k] = plane_integral(o, o->h*k/TABLE);
     o->lambda[TABLE] = 0;
     for (int k = TABLE - 1; k >= 0; k--)
@@ -320,7 +322,7 @@ static void laplacian(const oracle *o, const row *in, int i, int field, double l
 static void oracle_laplacian(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
-    for (int i = 0; i < o->count; i++) laplacian(o, in, i, VEL, &out[i][ACC]);
+    for (int i = 0; i < o->count; i++) laplacian(o, in, i, VEL, &out[i][ACC]), out[i][BAND] = 0;
 }
 
 /* Eq. (6b): 0 .. 1 by pressure, 1 from that of two spacings of depth on; none with (7b). */

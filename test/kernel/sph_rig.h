@@ -77,7 +77,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->h = (float)g->c.h; v->inverse_h = (float)(1/g->c.h); v->shape = k->shape;
     v->weight = (float)g->c.weight; v->slope = (float)g->c.slope;
     v->wall_share = (float)g->c.wall_share; v->wall_lattice = (float)g->c.wall_lattice;
-    v->spacing = (float)g->c.spacing; v->volume = (float)g->c.volume;
+    v->inverse_rate = (float)(1/g->c.rate); v->spacing = (float)g->c.spacing; v->volume = (float)g->c.volume;
     v->dimension = k->dimension;
     v->surface_limit = (k->dimension == 3 ? 0.87f : 0.80f)*(float)k->dimension;
     v->table = &g->c.plane;

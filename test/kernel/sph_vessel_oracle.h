@@ -49,21 +49,26 @@ static void oracle_filter(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
     for (int i = 0; i < o->count; i++) {
+        double all = 0;
         for (int a = 0; a < 3; a++) out[i][ACC + a] = 0;
-        EACH_NEIGHBOUR(o, in, i, j, x, r)
+        EACH_NEIGHBOUR(o, in, i, j, x, r) {
+            all += o->volume*o->g_scale*oracle_f(o, r);
             for (int a = 0; a < 3; a++)
                 out[i][ACC + a] += weigh_by_moment(o, in, i, x, r, 1)*(in[j][VEL + a] - in[i][VEL + a]);
+        }
+        out[i][BAND] = fmin(1, pow(1.15*o->rate/fmax(all, 1e-30), 1.5));
+        for (int a = 0; a < 3; a++) out[i][ACC + a] *= out[i][BAND];
     }
 }
 
-/* R = -L L' v. */
+/* R = -S L S L' v, S in the last component. */
 static void oracle_filter_compare(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
     for (int i = 0; i < o->count; i++) {
         double ll[3];
         laplacian(o, in, i, ACC, ll);
-        for (int a = 0; a < 3; a++) out[i][ROUGH + a] = -ll[a];
+        for (int a = 0; a < 3; a++) out[i][ROUGH + a] = -in[i][BAND]*ll[a];
     }
 }
 
