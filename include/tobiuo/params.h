@@ -74,6 +74,11 @@ TOBI_API extern const tobi_param_table tobi_damping_table;
 /* Whether gravity can follow it, its file included. */
 TOBI_API tobi_status tobi_gravity_check(const tobi_gravity_def *def, tobi_error *err);
 
+/* The same of a motor; of one that is none, TOBI_OK. */
+TOBI_API tobi_status tobi_motor_check(const tobi_motor_def *def, tobi_error *err);
+/* Whether it gives anything of a motor. */
+TOBI_API int tobi_motor_is_given(const tobi_motor_def *def);
+
 /* Every table by index, those of methods among them; NULL past the end. */
 TOBI_API const tobi_param_table *tobi_param_table_at(int index);
 /* The parameters of a method by its name ("dfsph"), NULL if there is no such method. */

@@ -175,9 +175,20 @@ typedef struct tobi_control_output {
 typedef tobi_status (*tobi_control_fn)(void *user, const tobi_control_input *in,
                                        tobi_control_output *out, tobi_error *err);
 
-/* A body: the inside of a closed mesh, or of one of the shapes, prescribed or moved by forces. */
 #define TOBI_NO_PLACE (-1e9)
 #define TOBI_NOT_GIVEN (-1e9)
+
+/* The motor of a hinge: one of speed, angle and torque, or a file. tobi_default_joint_def and
+   tobi_default_body_def give none of them, which is no motor. */
+typedef struct tobi_motor_def {
+    double speed, angle, torque;    /* degrees/s, degrees since the start, N m; or TOBI_NOT_GIVEN     */
+    const char *file;               /* CSV: time (s) and one of speed, angle, torque; NULL = none     */
+    double amplitude, period, phase;    /* of a swing that is added: in the unit of that; s; degrees  */
+    double start, ramp;             /* s: 0 until start, then it grows so long, as motions do         */
+    double torque_max;              /* N m, of speed and angle; 0 = no bound                          */
+} tobi_motor_def;
+
+/* A body: the inside of a closed mesh, or of one of the shapes, prescribed or moved by forces. */
 typedef struct tobi_body_def {
     const char *name;
     const char *mesh;           /* path: OBJ, STL or PLY; NULL = a shape                              */
@@ -232,6 +243,7 @@ typedef struct tobi_body_def {
     double hinge_point[3], hinge_axis[3];   /* m, direction: it turns about a fixed axis; axis 0 = no  */
     double hinge_lower, hinge_upper;        /* degrees from the start, stops; both 0 = none           */
     double hinge_stiffness, hinge_damping;  /* N m/rad, N m s/rad                                     */
+    tobi_motor_def hinge_motor;
     double guide_axis[3];                   /* direction: it slides along a fixed axis; 0 = no        */
     double guide_lower, guide_upper;        /* m from the start, stops; both 0 = none                 */
     double guide_stiffness, guide_damping;  /* N/m, N s/m                                             */
@@ -335,6 +347,7 @@ typedef struct tobi_joint_def {
     double point[3], axis[3];   /* m, of any length: as the bodies start. axis of a hinge, 0: z      */
     double lower, upper, rest;  /* degrees, of a hinge: its stops, both 0 = none; rest of its spring */
     double stiffness, damping;  /* N m/rad, N m s/rad, of a hinge                                    */
+    tobi_motor_def motor;       /* of a hinge                                                        */
 } tobi_joint_def;
 
 /* A joint after a step. */
@@ -343,6 +356,9 @@ typedef struct tobi_joint_info {
     double moment[3];           /* N m on it; of a hinge across its axis, of a ball joint 0          */
     double angle;               /* degrees since the start, of the body against the other            */
     double gap;                 /* m between what is joined                                          */
+    double motor_torque;        /* N m about the axis on the body, of a motor, mean over the step    */
+    double power;               /* W that damper and motor take from the bodies, mean over the step  */
+    int    has_motor, has_power;    /* 1: it has a motor; a motor or a damper                        */
 } tobi_joint_info;
 
 /* What pictures show, and from where. */

@@ -25,7 +25,16 @@ static int moves(const tobi_body *bodies, int body)
 static int count_rows(const tobi_constraints *c, const tobi_constraint *j)
 {
     const int fixed = j->kind == TOBI_BETWEEN_FIXED;
-    return (c->dimension == 2 ? 2 : j->kind == TOBI_BETWEEN_BALL ? 3 : 5) + (fixed || j->lower < j->upper);
+    if (j->kind == TOBI_BETWEEN_MOTOR) return 1;
+    return (c->dimension == 2 ? 2 : j->kind == TOBI_BETWEEN_BALL ? 3 : 5) + (fixed || j->lower < j->upper) +
+           (j->motor.kind != TOBI_MOTOR_NONE);
+}
+
+/* The row of its motor, before that of its stops; NULL: none. */
+static tobi_constraint_row *motor_of(const tobi_constraints *c, const tobi_constraint *j,
+                                     tobi_constraint_row *row)
+{
+    return j->motor.kind ? row + count_rows(c, j) - 1 - (j->lower < j->upper) : NULL;
 }
 
 static int find_slot(tobi_constraints *c, const tobi_body *bodies, int body)
@@ -118,9 +127,8 @@ int tobi_constraints_join(const tobi_constraints *c, int a, int b)
 
 /* --- rows --------------------------------------------------------------------------------------- */
 
-/* Where one side of a joint is, m from the domain's lower corner, and its axis; next: at the next pose. */
-static void find_end(const tobi_constraint *j, int side, const tobi_body *bodies, int next, double point[3],
-                     double axis[3])
+void tobi_constraint_end(const tobi_constraint *j, int side, const tobi_body *bodies, int next,
+                         double point[3], double axis[3])
 {
     const int body = j->body[side];
     double m[3][3];
@@ -151,20 +159,23 @@ static void make_tangents(const double n[3], double out[2][3])
 }
 
 /* Along the axes of the domain the places do not part; about two axes across a hinge the bodies do not turn
-   against each other, at a stop or fixed not about its axis: that is the last row. */
+   against each other, by a motor as it says about its axis, at a stop or fixed not about it: the last row. */
 static void make_rows(const tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
                       tobi_constraint_row *row, int count)
 {
     const int fixed = j->kind == TOBI_BETWEEN_FIXED, last = fixed || j->lower < j->upper ? count - 1 : -1;
+    const tobi_constraint_row *motor = motor_of(c, j, row);
     double point[2][3], axis[2][3], across[2][3];
-    for (int side = 0; side < 2; side++) find_end(j, side, bodies, 0, point[side], axis[side]);
+    for (int side = 0; side < 2; side++) tobi_constraint_end(j, side, bodies, 0, point[side], axis[side]);
     make_tangents(axis[0], across);
     for (int i = 0; i < count; i++) {
         const double along[3] = { i == 0, i == 1, i == 2 };
         tobi_constraint_row *r = &row[i];
+        const int about = i == last || r == motor;
         r->stop = i == last && !fixed;
-        r->turns = i >= c->dimension;
-        memcpy(r->axis, i == last ? axis[0] : r->turns ? across[i - c->dimension] : along, sizeof r->axis);
+        r->motor = r != motor ? 0 : j->motor.kind == TOBI_MOTOR_TORQUE ? -1 : 1;
+        r->turns = about || i >= c->dimension;
+        memcpy(r->axis, about ? axis[0] : r->turns ? across[i - c->dimension] : along, sizeof r->axis);
         memset(r->jacobian, 0, sizeof r->jacobian);
         for (int side = 0; side < 2; side++) {
             double arm[3], lever[3];
@@ -180,16 +191,24 @@ static void make_rows(const tobi_constraints *c, const tobi_constraint *j, const
 }
 
 /* How far a joint is open at the next pose, in its rows. */
-static void find_gap(const tobi_constraint *j, const tobi_body *bodies, tobi_constraint_row *row, int count)
+static void find_gap(const tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
+                     tobi_constraint_row *row)
 {
+    const int count = count_rows(c, j);
+    tobi_constraint_row *motor = motor_of(c, j, row);
     double point[2][3], axis[2][3], apart[3], turned[3];
-    for (int side = 0; side < 2; side++) find_end(j, side, bodies, 1, point[side], axis[side]);
+    for (int side = 0; side < 2; side++) tobi_constraint_end(j, side, bodies, 1, point[side], axis[side]);
     vec3_sub(apart, point[1], point[0]);
     vec3_cross(turned, axis[0], axis[1]);
     for (int i = 0; i < count; i++) row[i].gap = vec3_dot(row[i].axis, row[i].turns ? turned : apart);
+    if (motor) motor->gap = motor->motor < 0 || motor->released ? 0 : tobi_motor_gap(j, bodies);
     tobi_constraint_row *last = &row[count - 1];
     if (j->kind == TOBI_BETWEEN_FIXED) last->gap = -tobi_constraint_angle(j, bodies, 1);
     if (!last->stop) return;
+    if (motor && motor->active) {                /* it turns to where the stops allow */
+        last->gap = 0;
+        return;
+    }
     const double angle = tobi_constraint_angle(j, bodies, 1);
     last->gap = (last->active < 0 ? j->lower : j->upper) - angle;
     if (!last->active) last->gap = last->released ? 0 : fmin(j->upper - angle, 0) + fmax(j->lower - angle, 0);
@@ -251,17 +270,27 @@ static void factorize(tobi_constraints *c)
             a[j] *= c->row[j].inverse;
             left -= a[j]*a[j];
         }
-        p->inverse = left > DEPENDENT*whole && (!p->stop || p->active) ? 1/sqrt(left) : 0;
+        p->mobility = left;
+        p->inverse = left > DEPENDENT*whole && (!(p->stop || p->motor) || p->active) ? 1/sqrt(left) : 0;
     }
 }
 
 /* A stop at rest holds; those that a body runs into or leaves are found when velocities or gaps show it. */
 static void set_stop(const tobi_constraint *j, const tobi_body *bodies, tobi_constraint_row *row)
 {
-    row->active = row->released = 0;
     if (!row->stop) return;
+    row->active = row->released = 0;
     const int stop = tobi_constraint_at_stop(j, tobi_constraint_angle(j, bodies, 0));
     row->active = fabs(tobi_constraint_rate(j, bodies)) <= AT_REST ? stop : 0;
+}
+
+/* A motor that is obeyed holds; whether one drives that is not, velocities and gaps show. */
+static void set_motor(const tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
+                      tobi_constraint_row *row)
+{
+    if (!row) return;
+    row->released = 0;
+    row->active = row->motor > 0 && c->dt > 0 && (isinf(j->motor.most) || tobi_motor_follows(j, bodies));
 }
 
 void tobi_constraints_factor(tobi_constraints *c, const tobi_body *bodies)
@@ -269,6 +298,7 @@ void tobi_constraints_factor(tobi_constraints *c, const tobi_body *bodies)
     tobi_constraint_row *row = c->row;
     for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++) {
         make_rows(c, &c->at[k], bodies, row, count_rows(c, &c->at[k]));
+        set_motor(c, &c->at[k], bodies, motor_of(c, &c->at[k], row));
         set_stop(&c->at[k], bodies, &row[count_rows(c, &c->at[k]) - 1]);
     }
     for (int i = 0; i < c->rows; i++)
@@ -320,17 +350,24 @@ void tobi_constraints_project(tobi_constraints *c, int moving)
     apply_change(c);
 }
 
-/* Whether the impulse of a stop pulls: then the stop lets go, and gives it back. */
+void tobi_constraints_change(tobi_constraints *c, int row, double change)
+{
+    memset(c->change, 0, (size_t)c->rows*sizeof *c->change);
+    c->change[row] = change;
+    apply_change(c);
+}
+
+/* Whether the impulse of a stop pulls: then the stop lets go, and gives it back; that of a motor has a bound
+   of either sign. */
 static int release(tobi_constraints *c, int i)
 {
     tobi_constraint_row *r = &c->row[i];
     double most = 0;
+    if (r->motor > 0) return tobi_motor_limit(c, i);
     if (!r->stop || !r->active) return 0;
     for (int k = 0; k < c->rows; k++) most = fmax(most, fabs(c->impulse[k]));
     if (!(c->impulse[i]*r->active < -NOTHING*most)) return 0;
-    memset(c->change, 0, (size_t)c->rows*sizeof *c->change);
-    c->change[i] = -c->impulse[i];
-    apply_change(c);
+    tobi_constraints_change(c, i, -c->impulse[i]);
     r->active = 0;
     r->released = 1;
     return 1;
@@ -350,15 +387,28 @@ static int meet(tobi_constraints *c, const tobi_constraint *j, const tobi_body *
     return 1;
 }
 
+static void bound_motors(tobi_constraints *c, double share)
+{
+    tobi_constraint_row *row = c->row;
+    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++)
+        if (c->at[k].motor.kind) tobi_motor_bound(c, &c->at[k], motor_of(c, &c->at[k], row), share);
+}
+
 void tobi_constraints_obey(tobi_constraints *c, const tobi_body *bodies)
 {
     for (int i = 0; i < c->rows; i++) c->row[i].released = 0;
+    bound_motors(c, 1);
     for (int n = 0, again = 1; again; n++) {
         int row = 0;
         again = 0;
         tobi_constraints_project(c, 1);
         for (int k = 0; k < c->count && n < MOST_CHANGES; k++) {
             row += count_rows(c, &c->at[k]);
+            tobi_constraint_row *motor = motor_of(c, &c->at[k], c->row + row - count_rows(c, &c->at[k]));
+            if (motor) {
+                again |= release(c, (int)(motor - c->row));
+                again |= tobi_motor_engage(c, motor, c->impulse[motor - c->row]);
+            }
             again |= release(c, row - 1);
             again |= meet(c, &c->at[k], bodies, &c->row[row - 1]);
         }
@@ -376,7 +426,7 @@ void tobi_constraints_add_load(const tobi_constraints *c, int slot, double f[6])
 
 /* --- poses -------------------------------------------------------------------------------------- */
 
-/* Where the motion of a prescribed body takes a joint, and how fast that opens it. */
+/* Where a motor and the motion of a prescribed body take a joint, and how fast that opens it. */
 static tobi_status follow_motion(const tobi_constraints *c, tobi_constraint *j, const tobi_body *bodies,
                                  double t, double dt, tobi_constraint_row *row, tobi_error *err)
 {
@@ -384,6 +434,10 @@ static tobi_status follow_motion(const tobi_constraints *c, tobi_constraint *j, 
     const int count = count_rows(c, j);
     double rest[2][3], now[2][3], point[3], axis[3], shift[3], turned[3];
     for (int i = 0; i < count; i++) row[i].pace = 0;
+    if (j->motor.kind) {
+        tobi_motor_aim(j, bodies, dt, motor_of(c, j, row)->mobility);
+        motor_of(c, j, row)->pace = j->motor.rate;
+    }
     if (!b || b->rigid.kind != TOBI_PRESCRIBED) return TOBI_OK;
     vec3_add_scaled(rest[0], b->rest.centre, 1, j->point[1]);
     vec3_add_scaled(rest[1], rest[0], c->reach, j->axis[1]);
@@ -392,10 +446,11 @@ static tobi_status follow_motion(const tobi_constraints *c, tobi_constraint *j, 
     vec3_sub(j->next_point, now[0], b->lower);
     vec3_sub(j->next_axis, now[1], now[0]);
     vec3_normalize(j->next_axis);
-    find_end(j, 1, bodies, 0, point, axis);
+    tobi_constraint_end(j, 1, bodies, 0, point, axis);
     vec3_sub(shift, j->next_point, point);
     vec3_cross(turned, axis, j->next_axis);
-    for (int i = 0; i < count; i++) row[i].pace = vec3_dot(row[i].axis, row[i].turns ? turned : shift)/dt;
+    for (int i = 0; i < count; i++)
+        if (!row[i].motor) row[i].pace = vec3_dot(row[i].axis, row[i].turns ? turned : shift)/dt;
     return TOBI_OK;
 }
 
@@ -405,7 +460,7 @@ static double find_gaps(tobi_constraints *c, const tobi_body *bodies)
     tobi_constraint_row *row = c->row;
     double most = 0;
     for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++)
-        find_gap(&c->at[k], bodies, row, count_rows(c, &c->at[k]));
+        find_gap(c, &c->at[k], bodies, row);
     for (int i = 0; i < c->rows; i++) most = fmax(most, fabs(c->row[i].gap)/(c->row[i].turns ? 1 : c->reach));
     return most/CLOSED;
 }
@@ -422,12 +477,13 @@ static void drift(const tobi_constraints *c, tobi_body *bodies, double dt, int d
     }
 }
 
-/* Stops that the next pose is beyond. */
+/* Stops that the next pose is beyond; motors that drive. */
 static int hold_stops(tobi_constraints *c)
 {
     int met = 0;
     for (int i = 0; i < c->rows; i++) {
         tobi_constraint_row *r = &c->row[i];
+        met |= tobi_motor_engage(c, r, c->impulse[i]);
         if (!r->stop || r->active || r->gap == 0) continue;
         r->active = r->gap < 0 ? 1 : -1;
         met = 1;
@@ -449,6 +505,7 @@ static int release_stops(tobi_constraints *c)
 static void close_gaps(tobi_constraints *c, tobi_body *bodies, double dt, int driven)
 {
     double before = INFINITY;
+    bound_motors(c, driven ? 1 : 0.5);
     for (int round = 0; round < MOST_ROUNDS; round++) {
         drift(c, bodies, dt, driven);
         const double now = find_gaps(c, bodies);
@@ -468,7 +525,10 @@ static void close_gaps(tobi_constraints *c, tobi_body *bodies, double dt, int dr
 
 static void forget_impulses(tobi_constraints *c)
 {
-    for (int k = 0; k < c->count; k++) memset(c->at[k].impulse, 0, sizeof c->at[k].impulse);
+    for (int k = 0; k < c->count; k++) {
+        memset(c->at[k].impulse, 0, sizeof c->at[k].impulse);
+        c->at[k].motor.impulse = 0;
+    }
     memset(c->impulse, 0, (size_t)c->rows*sizeof *c->impulse);
 }
 
@@ -478,6 +538,7 @@ tobi_status tobi_constraints_close(tobi_constraints *c, tobi_body *bodies, doubl
     tobi_constraint_row *row = c->row;
     c->driven = 0;
     if (c->count == 0) return TOBI_OK;
+    tobi_motors_begin(c, bodies, dt);
     tobi_constraints_take_inverse(c, bodies);
     tobi_constraints_factor(c, bodies);
     for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++)
@@ -520,33 +581,7 @@ void tobi_constraints_count(tobi_constraints *c)
     const tobi_constraint_row *row = c->row;
     for (int k = 0; k < c->count; k++)
         for (int i = count_rows(c, &c->at[k]); i > 0; i--, row++, impulse++)
-            vec3_add_scaled(c->at[k].impulse + 3*row->turns, c->at[k].impulse + 3*row->turns, -*impulse,
-                            row->axis);
-}
-
-/* Of a ball joint, or one that is fixed, about any axis. */
-static double find_ball_angle(const tobi_constraint *j, const tobi_body *bodies)
-{
-    double q[4], back[4];
-    find_turn(j, bodies, q);
-    for (int a = 0; a < 4; a++) back[a] = a ? -j->start[a] : j->start[a];
-    tobi_quaternion_product(q, back, q);
-    return remainder(2*atan2(vec3_length(q + 1), q[0]), 2*acos(-1));
-}
-
-void tobi_constraints_report(tobi_constraints *c, const tobi_body *bodies, double dt)
-{
-    const double degree = acos(-1)/180;
-    for (int k = 0; k < c->count; k++) {
-        tobi_constraint *j = &c->at[k];
-        double point[2][3], axis[2][3];
-        for (int side = 0; side < 2; side++) find_end(j, side, bodies, 0, point[side], axis[side]);
-        for (int a = 0; a < 3; a++) {
-            j->info.force[a] = dt > 0 ? j->impulse[a]/dt : 0;
-            j->info.moment[a] = dt > 0 ? j->impulse[3 + a]/dt : 0;
-        }
-        j->info.gap = sqrt(vec3_distance2(point[0], point[1]));
-        const int hinge = c->dimension == 2 || j->kind == TOBI_BETWEEN_HINGE;
-        j->info.angle = (hinge ? tobi_constraint_angle(j, bodies, 0) : find_ball_angle(j, bodies))/degree;
-    }
+            if (row->motor) c->at[k].motor.impulse -= *impulse;
+            else vec3_add_scaled(c->at[k].impulse + 3*row->turns, c->at[k].impulse + 3*row->turns, -*impulse,
+                                 row->axis);
 }

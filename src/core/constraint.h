@@ -4,19 +4,39 @@
 #pragma once
 #include "core/body.h"
 
-enum { TOBI_CONSTRAINT_ROWS = 6 };       /* of a hinge in 3-D with stops, of a fixed joint */
+enum { TOBI_CONSTRAINT_ROWS = 7 };       /* of a hinge in 3-D with stops and a motor                    */
+enum { TOBI_BETWEEN_MOTOR = 3 };         /* besides tobi_joint_between: the motor of a body's own hinge  */
+
+/* What a motor is told: nothing, how fast, how far, how strong. */
+typedef enum tobi_motor_kind {
+    TOBI_MOTOR_NONE, TOBI_MOTOR_SPEED, TOBI_MOTOR_ANGLE, TOBI_MOTOR_TORQUE
+} tobi_motor_kind;
+
+/* The motor of a hinge: a row about its axis whose impulse is bounded, or a torque (core/motor.c). */
+typedef struct tobi_motor {
+    int kind;                            /* tobi_motor_kind                                             */
+    double most;                         /* N m, INFINITY: no bound                                     */
+    double before, value;                /* rad/s, rad, N m: asked for when the step begins and ends     */
+    double rate, goal;                   /* rad/s, rad: what it tries in the step                       */
+    double impulse;                      /* N m s about the axis on the body, in this step              */
+} tobi_motor;
 
 /* A row: the change of one number by velocity and angular velocity of both bodies. */
 typedef struct tobi_constraint_row {
     double axis[3];                      /* of length 1                                                 */
     int turns;                           /* 1: about the axis, 0: along it                              */
     int stop;                            /* 1: of the stops of a hinge                                  */
-    int active;                          /* of it: -1 at the lower stop, 1 at the upper, 0: no row now  */
+    int motor;                           /* 1: of a motor by speed or angle, -1: by torque, never a row */
+    int active;                          /* of a stop: -1 at the lower, 1 at the upper; of a motor: 1;
+                                            0: no row now                                               */
     int released;                        /* 1: it has let go in the round at hand                       */
     int slot[2];                         /* of the bodies, -1: none that moves by forces                */
     double jacobian[2][6], answer[2][6]; /* J and W J^T                                                 */
     double pace;                         /* m/s, rad/s: what the motion of the other side asks for      */
     double gap;                          /* m, rad, of the next pose                                    */
+    double most, taken;                  /* N m s, of a motor: bound of its impulse in the step, and what it
+                                            gave in earlier stages of it                                */
+    double mobility;                     /* 1/(kg m2), of a motor: how fast its torque turns the hinge   */
     int first;                           /* first column of this row of the factor that is not 0        */
     double inverse;                      /* of the factor's diagonal; 0: others determine this row      */
 } tobi_constraint_row;
@@ -34,6 +54,8 @@ typedef struct tobi_constraint {
     double start[4];                     /* how the body is turned against the other at the start       */
     double next_point[3], next_axis[3];  /* at the end of the step, of a body that is prescribed        */
     double impulse[6];                   /* N s, N m s at the joint: on the body, in this step          */
+    tobi_motor motor;
+    double rate_before;                  /* rad/s, when the step began                                  */
     tobi_joint_info info;
 } tobi_constraint;
 
@@ -49,6 +71,7 @@ typedef struct tobi_constraints {
     double *factor;                      /* [rows][rows] of J W J^T, lower triangle                     */
     double *impulse, *change;            /* [rows] N s, N m s                                           */
     double reach;                        /* m, to compare gaps with                                     */
+    double dt;                           /* s, of the step at hand; 0: none yet                         */
     int driven;                          /* 1: a liquid has set the drift of this step, by
                                             tobi_rigid.predicted                                        */
 } tobi_constraints;
@@ -63,6 +86,9 @@ int tobi_constraints_join(const tobi_constraints *c, int a, int b);
 /* Of a body, -1: no joint holds it, or no force moves it. */
 int tobi_constraints_slot(const tobi_constraints *c, int body);
 
+/* Where one side of a joint is, m from the domain's lower corner, and its axis; next: at the next pose. */
+void tobi_constraint_end(const tobi_constraint *j, int side, const tobi_body *bodies, int next,
+                         double point[3], double axis[3]);
 /* joint_angle.c: of the body against the other since the start, rad, -pi to pi; next: at the next pose. */
 double tobi_constraint_angle(const tobi_constraint *j, const tobi_body *bodies, int next);
 /* How fast it grows, rad/s. */
@@ -74,6 +100,24 @@ void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodie
 /* Adds to the torque on a body: `now` of the springs, `before` of them a step ago, `damped` of dampers. */
 void tobi_constraints_add_springs(const tobi_constraints *c, int body, double now, double before,
                                   double damped, double torque[3]);
+/* motor.c: where a step of dt begins, before W is taken. */
+void tobi_motors_begin(tobi_constraints *c, tobi_body *bodies, double dt);
+/* What a motor tries in it, with the mobility of its row. */
+void tobi_motor_aim(tobi_constraint *j, const tobi_body *bodies, double dt, double mobility);
+/* How far the next pose is from that, rad. */
+double tobi_motor_gap(const tobi_constraint *j, const tobi_body *bodies);
+/* Whether the hinge does what the motor was told when the step began. */
+int tobi_motor_follows(const tobi_constraint *j, const tobi_body *bodies);
+/* Sets the bound of a row, of a share of the step. */
+void tobi_motor_bound(const tobi_constraints *c, const tobi_constraint *j, tobi_constraint_row *row,
+                      double share);
+/* Whether the impulse of a row is beyond its bound: then it is brought there, and the row is no row. */
+int tobi_motor_limit(tobi_constraints *c, int row);
+/* Whether a row that is none has an impulse within its bound, or wants one: then it is a row again. */
+int tobi_motor_engage(const tobi_constraints *c, tobi_constraint_row *row, double impulse);
+/* N m, and W that damper and motor take from the bodies, after a step of dt; 0: not known. */
+void tobi_motor_report(tobi_constraint *j, const tobi_body *bodies, double dt);
+
 /* s: a third of a radian of the fastest swing that springs and dampers make; INFINITY: none. */
 double tobi_constraints_step_limit(const tobi_constraints *c, const tobi_body *bodies);
 
@@ -88,6 +132,8 @@ void tobi_constraints_factor(tobi_constraints *c, const tobi_body *bodies);
 void tobi_constraints_project(tobi_constraints *c, int moving);
 /* The same for velocities, with the stops that bodies run into; those that would pull are let go. */
 void tobi_constraints_obey(tobi_constraints *c, const tobi_body *bodies);
+/* Adds `change` to an impulse, c->change[row], with what it does to `speed`. */
+void tobi_constraints_change(tobi_constraints *c, int row, double change);
 /* Adds J^T impulse to f, N s and N m s about the centre of the body in a slot. */
 void tobi_constraints_add_load(const tobi_constraints *c, int slot, double f[6]);
 

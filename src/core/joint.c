@@ -168,7 +168,7 @@ static int find_stop(const tobi_rigid *r)
 void tobi_joint_freedom(const tobi_rigid *r, double s[6])
 {
     memset(s, 0, 6*sizeof *s);
-    if (!r->joint.kind || (tobi_joint_rate(r) == 0 && find_stop(r))) return;
+    if (!r->joint.kind || (!r->joint.pulled && tobi_joint_rate(r) == 0 && find_stop(r))) return;
     tobi_joint_span(r, s);
     for (int a = 0; a < 6; a++) s[a] /= sqrt(r->joint.mass);
 }
@@ -217,7 +217,7 @@ double tobi_joint_pull(const tobi_rigid *r)
 void tobi_joint_drift(tobi_rigid *r, double dt)
 {
     tobi_joint *j = &r->joint;
-    const double keep = tobi_rigid_keep(r, dt), rate = tobi_joint_rate(r);
+    const double keep = tobi_rigid_keep(r, dt), rate = j->rate = tobi_joint_rate(r);
     const double *push = j->kind == TOBI_JOINT_HINGE ? r->turn : r->push;
     double s[6];
     tobi_joint_load_open(r);

@@ -24,6 +24,8 @@ typedef struct tobi_joint {
     double pull;                     /* rad/s2 or m/s2: of the pull there                                */
     int held;                        /* 1: contact answers the pull                                      */
     int driven;                      /* 1: a liquid has set the drift                                    */
+    int pulled;                      /* 1: a motor is to turn it, off a stop, too                        */
+    double rate;                     /* rad/s or m/s, where the drift began                              */
     double before[3];                /* m: the centre where the drift began                              */
     double momentum[6];              /* kg m/s, kg m2/s about the point, where the drift began           */
     double other[6];                 /* N s, N m s about the point: of all but the bearing, in this step */

@@ -1,6 +1,6 @@
-/* The angle of a joint between bodies, and what acts on it: springs and dampers as torques at an instant,
-   whose means over a step keep the energy like those of lines; stops. Drawback: stiff springs shorten the
-   time step. */
+/* The angle of a joint between bodies, and what acts on it: springs, dampers and torques of motors at an
+   instant, whose means over a step keep the energy like those of lines; stops; what is told. Drawback: stiff
+   springs shorten the time step. */
 #include "core/constraint.h"
 #include "geom/vec3.h"
 #include <math.h>
@@ -8,9 +8,10 @@
 
 #define AT_STOP 1e-9                     /* rad */
 
-double tobi_constraint_angle(const tobi_constraint *j, const tobi_body *bodies, int next)
+/* w x y z of the body against the other since the start. */
+static void find_turn(const tobi_constraint *j, const tobi_body *bodies, int next, double q[4])
 {
-    double to[4] = { 1, 0, 0, 0 }, back[4], q[4];
+    double to[4] = { 1, 0, 0, 0 }, back[4];
     const tobi_rigid *r = &bodies[j->body[0]].rigid;
     if (j->body[1] >= 0) {
         const tobi_rigid *other = &bodies[j->body[1]].rigid;
@@ -21,6 +22,12 @@ double tobi_constraint_angle(const tobi_constraint *j, const tobi_body *bodies, 
     tobi_quaternion_product(to, next ? r->next_orientation : r->orientation, q);
     for (int a = 0; a < 4; a++) back[a] = a ? -j->start[a] : j->start[a];
     tobi_quaternion_product(q, back, q);
+}
+
+double tobi_constraint_angle(const tobi_constraint *j, const tobi_body *bodies, int next)
+{
+    double q[4];
+    find_turn(j, bodies, next, q);
     return remainder(2*atan2(vec3_dot(q + 1, j->axis[1]), q[0]), 2*acos(-1));
 }
 
@@ -46,7 +53,10 @@ int tobi_constraint_at_stop(const tobi_constraint *j, double angle)
     return angle <= j->lower + AT_STOP ? -1 : angle >= j->upper - AT_STOP ? 1 : 0;
 }
 
-static int acts(const tobi_constraint *j) { return j->stiffness > 0 || j->damping > 0; }
+static int acts(const tobi_constraint *j)
+{
+    return j->stiffness > 0 || j->damping > 0 || j->motor.kind == TOBI_MOTOR_TORQUE;
+}
 
 void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodies)
 {
@@ -58,8 +68,9 @@ void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodie
         memcpy(j->before, j->torque, sizeof j->before);
         const double turn = remainder(tobi_constraint_angle(j, bodies, 0) - j->rest, 2*acos(-1)),
                      rate = tobi_constraint_rate(j, bodies);
+        const double driven = j->motor.kind == TOBI_MOTOR_TORQUE ? j->motor.value : 0;
         for (int a = 0; a < 3; a++) {
-            j->torque[a] = -j->stiffness*turn*axis[a];
+            j->torque[a] = (driven - j->stiffness*turn)*axis[a];
             j->damped[a] = -j->damping*rate*axis[a];
         }
     }
@@ -103,4 +114,32 @@ double tobi_constraints_step_limit(const tobi_constraints *c, const tobi_body *b
         if (j->damping > 0) limit = fmin(limit, 1/(3*j->damping*m));
     }
     return limit;
+}
+
+/* --- what is told ------------------------------------------------------------------------------- */
+
+/* Of a ball joint, or one that is fixed, about any axis. */
+static double find_ball_angle(const tobi_constraint *j, const tobi_body *bodies)
+{
+    double q[4];
+    find_turn(j, bodies, 0, q);
+    return remainder(2*atan2(vec3_length(q + 1), q[0]), 2*acos(-1));
+}
+
+void tobi_constraints_report(tobi_constraints *c, const tobi_body *bodies, double dt)
+{
+    const double degree = acos(-1)/180;
+    for (int k = 0; k < c->count; k++) {
+        tobi_constraint *j = &c->at[k];
+        double point[2][3], axis[2][3];
+        for (int side = 0; side < 2; side++) tobi_constraint_end(j, side, bodies, 0, point[side], axis[side]);
+        for (int a = 0; a < 3; a++) {
+            j->info.force[a] = dt > 0 ? j->impulse[a]/dt : 0;
+            j->info.moment[a] = dt > 0 ? j->impulse[3 + a]/dt : 0;
+        }
+        tobi_motor_report(j, bodies, dt);
+        j->info.gap = sqrt(vec3_distance2(point[0], point[1]));
+        const int hinge = c->dimension == 2 || j->kind == TOBI_BETWEEN_HINGE;
+        j->info.angle = (hinge ? tobi_constraint_angle(j, bodies, 0) : find_ball_angle(j, bodies))/degree;
+    }
 }

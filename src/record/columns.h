@@ -164,4 +164,8 @@
     SOLID("moment_y", "N m", i.moment[1], "") \
     V("moment_z", "N m", i.moment[2], "") \
     V("angle", "degrees", i.angle, "Angle of body against to_body since the start.") \
-    V("gap", "m", i.gap, "Distance of the two points that the joint holds together.")
+    V("gap", "m", i.gap, "Distance of the two points that the joint holds together.") \
+    V("motor_torque", "N m", i.motor_torque, \
+      "Torque of its motor about the axis on its body, where it has one.") \
+    V("power", "W", i.power, \
+      "Taken from the bodies by damper and motor, where it has any; below 0 the motor drives.")

@@ -5,6 +5,7 @@
 #include "world/world.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define V(name, unit, value, doc) { name, unit, 0 },
 #define SOLID_V(name, unit, value, doc) { name, unit, 1 },
@@ -13,9 +14,11 @@ static const struct { const char *name, *unit; int solid; } values[] = { JOINT(V
 #undef SOLID_V
 enum { VALUES = sizeof values/sizeof *values };
 
-/* In 2-D a joint has no force along z, and a moment about z alone. */
-static int is_told(const tobi_run *run, int value)
+/* In 2-D a joint has no force along z, and a moment about z alone. Motors and dampers some have. */
+static int is_told(const tobi_run *run, const tobi_joint_info *i, int value)
 {
+    if (strcmp(values[value].name, "motor_torque") == 0) return i->has_motor;
+    if (strcmp(values[value].name, "power") == 0) return i->has_power;
     return !values[value].solid || run->world->sim.def.dimension == 3;
 }
 
@@ -28,13 +31,16 @@ tobi_status tobi_joints_open(tobi_run *run, bool continued, tobi_error *err)
     tobi_csv_column *columns = calloc((size_t)joints*VALUES + 1, sizeof *columns);
     char (*names)[NAME] = calloc((size_t)joints*VALUES + 1, sizeof *names);
     tobi_status status = columns && names ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
-    for (int k = 0; status == TOBI_OK && k < joints; k++)
+    for (int k = 0; status == TOBI_OK && k < joints; k++) {
+        tobi_joint_info info;
+        const char *name = tobi_world_joint(run->world, k, &info);
         for (int v = 0; v < VALUES; v++) {
-            if (!is_told(run, v)) continue;
-            snprintf(names[count], NAME, "%s_%s", tobi_world_joint(run->world, k, NULL), values[v].name);
+            if (!is_told(run, &info, v)) continue;
+            snprintf(names[count], NAME, "%s_%s", name, values[v].name);
             columns[count] = (tobi_csv_column){ names[count], values[v].unit };
             count++;
         }
+    }
     const double now = tobi_world_time(run->world);
     if (status == TOBI_OK) columns[0] = (tobi_csv_column){ "time", "s" };
     if (status == TOBI_OK)
@@ -58,7 +64,7 @@ tobi_status tobi_joints_write(tobi_run *run, double before, tobi_error *err)
         const double row[VALUES] = { JOINT(V, V) };
 #undef V
         for (int v = 0; v < VALUES; v++)
-            if (is_told(run, v)) tobi_csv_add_real(run->joints, row[v]);
+            if (is_told(run, &i, v)) tobi_csv_add_real(run->joints, row[v]);
     }
     return tobi_trouble_pass(run, TOBI_KIND_TABLES, run->outputs, tobi_csv_end_row(run->joints, err), err);
 }

@@ -17,17 +17,18 @@
 enum { MOST_ROWS = 20000000, MOST_COLUMNS = 64, FILE_LIMIT = 1 << 30 /* bytes */ };
 
 typedef enum column {
-    TIME, X, Y, Z, QW, QX, QY, QZ, AX, AY, AZ, ANGLE, ROLL, PITCH, YAW, SPEED, RATE, COLUMNS
+    TIME, X, Y, Z, QW, QX, QY, QZ, AX, AY, AZ, ANGLE, ROLL, PITCH, YAW, SPEED, RATE, TORQUE, COLUMNS
 } column;
 
 static const char *const column_names[COLUMNS] = {"time", "x",  "y",  "z",     "qw",   "qx",    "qy", "qz",
                                                   "ax",   "ay", "az", "angle", "roll", "pitch", "yaw",
-                                                  "speed", "flow_rate"};
+                                                  "speed", "flow_rate", "torque"};
 
 /* The units that a column's name may bring along, as in "x [m]". */
 static const char *const length_units[] = {"m", NULL}, *const time_units[] = {"s", NULL};
 static const char *const pull_units[] = {"m/s2", NULL};
 static const char *const speed_units[] = {"m/s", NULL}, *const rate_units[] = {"m3/s", "m2/s", NULL};
+static const char *const turn_units[] = {"degrees/s", "deg/s", NULL}, *const torque_units[] = {"N m", NULL};
 static const char *const plain_units[] = {"1", NULL}, *const angle_units[] = {"degrees", "deg", NULL};
 
 typedef struct keyframe {
@@ -41,7 +42,7 @@ struct tobi_keyframes {
 };
 
 typedef struct reader {
-    const char *what, *path;            /* "keyframes", "gravity" or "flow"            */
+    const char *what, *path;            /* "keyframes", "gravity", "flow" or "motor"   */
     int64_t line;
     const char *separators;             /* those that the header may have, then the one that it has */
     int meaning[MOST_COLUMNS];          /* column of each field of a line              */
@@ -98,6 +99,14 @@ static char *next_field(const reader *r, char **rest)
 
 static int is_gravity(const reader *r) { return strcmp(r->what, "gravity") == 0; }
 static int is_flow(const reader *r) { return strcmp(r->what, "flow") == 0; }
+static int is_motor(const reader *r) { return strcmp(r->what, "motor") == 0; }
+
+/* Whether tables of this kind may have the column. */
+static int is_allowed(const reader *r, int c)
+{
+    if (is_motor(r)) return c == TIME || c == ANGLE || c == SPEED || c == TORQUE;
+    return c < SPEED || (is_flow(r) && c < TORQUE);
+}
 
 static tobi_status check_flow_columns(const reader *r, tobi_error *err)
 {
@@ -116,6 +125,10 @@ static tobi_status check_columns(const reader *r, tobi_error *err)
     int angles = g[ROLL] + g[PITCH] + g[YAW];
     if (!g[TIME]) return fail_here(r, err, "there is no column \"time\"", "");
     if (is_flow(r)) return check_flow_columns(r, err);
+    if (is_motor(r) && g[ANGLE] + g[SPEED] + g[TORQUE] == 1) return TOBI_OK;
+    if (is_motor(r))
+        return fail_here(r, err, "a motor has the columns time (s) and one of angle (degrees), speed "
+                         "(degrees/s) and torque (N m)", "");
     if (is_gravity(r) && quaternion + axis + angles)
         return fail_here(r, err, "gravity does not turn: allowed are time (s), x, y and z (m/s2)", "");
     if ((quaternion && quaternion < 4) || (axis && axis < 4))
@@ -131,7 +144,8 @@ static tobi_status check_columns(const reader *r, tobi_error *err)
 static const char *const *column_units(const reader *r, column c)
 {
     if (c == TIME) return time_units;
-    if (c >= SPEED) return c == SPEED ? speed_units : rate_units;
+    if (c >= SPEED)
+        return c == TORQUE ? torque_units : c == RATE ? rate_units : is_motor(r) ? turn_units : speed_units;
     if (c <= Z) return is_gravity(r) ? pull_units : length_units;
     return c < ANGLE ? plain_units : angle_units;
 }
@@ -172,12 +186,13 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
         char closing = 0, *unit = split_unit(field, &closing);
         if (!*field) return fail_here(r, err, "an empty column name (a comma too many?)", "");
         int found = strcasecmp(field, "t") == 0 ? TIME : COLUMNS;
-        for (int c = 0; c < (is_flow(r) ? COLUMNS : SPEED) && found == COLUMNS; c++)
-            if (strcasecmp(field, column_names[c]) == 0) found = c;
+        for (int c = 0; c < COLUMNS && found == COLUMNS; c++)
+            if (is_allowed(r, c) && strcasecmp(field, column_names[c]) == 0) found = c;
         if (found == COLUMNS)
             return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: there is no column \"%s\"; allowed are "
                              "time (s)%s", r->what, r->path, (long long)r->line, tobi_excerpt(field).text,
                              is_flow(r) ? ", speed (m/s) and flow_rate (m3/s)"
+                             : is_motor(r) ? " and one of angle (degrees), speed (degrees/s), torque (N m)"
                              : is_gravity(r) ? ", x, y, z (m/s2)"
                              : ", x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, pitch, yaw "
                                "(degrees)");
@@ -270,6 +285,7 @@ static tobi_status add_row(tobi_keyframes *f, int64_t *room, const reader *r, ch
     row.time = value[TIME];
     memcpy(row.shift, value + X, sizeof row.shift);
     if (is_flow(r)) row.shift[0] = value[SPEED] + value[RATE];
+    if (is_motor(r)) row.shift[0] = value[ANGLE] + value[SPEED] + value[TORQUE];
     if (is_flow(r) && row.shift[0] < 0)
         return fail_here(r, err, "the flow is below 0: an inlet lets nothing out", "");
     TOBI_TRY(read_turn(r, value, row.turn, err));
@@ -438,6 +454,14 @@ tobi_status tobi_keyframes_load_flow(const char *path, int *is_rate, tobi_keyfra
     reader r = {.what = "flow", .path = path};
     TOBI_TRY(load(&r, out, err));
     *is_rate = r.given[RATE];
+    return TOBI_OK;
+}
+
+tobi_status tobi_keyframes_load_motor(const char *path, int *column, tobi_keyframes **out, tobi_error *err)
+{
+    reader r = {.what = "motor", .path = path};
+    TOBI_TRY(load(&r, out, err));
+    *column = r.given[SPEED] ? 0 : r.given[ANGLE] ? 1 : 2;
     return TOBI_OK;
 }
 

@@ -52,6 +52,7 @@ const char *tobi_scene_file(const tobi_scene *scene, int index)
         look_in(&s, &tobi_solid_table, &scene->solids[k].def);
         look_in_fills(&s, scene->solids[k].fills, scene->solids[k].fill_count);
     }
+    for (int k = 0; k < scene->joint_count; k++) look_in(&s, &tobi_joint_table, &scene->joints[k]);
     for (int k = 0; k < scene->inlet_count; k++) look_in(&s, &tobi_inlet_table, &scene->inlets[k]);
     if (scene->tank.changes) look_in(&s, &tobi_gravity_table, &scene->tank.gravity);
     look_in_motion(&s, scene->tank.frame_def);

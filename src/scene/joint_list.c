@@ -58,6 +58,18 @@ static void check_axis(const tobi_scene *scene, tobi_source *source, const tobi_
         tobi_source_mistake(source, entry, "must have an axis, or be of kind ball");
 }
 
+/* A motor that cannot be one, or where none can be. */
+static void check_motor(const tobi_scene *scene, tobi_source *source, const tobi_joint_def *joint,
+                        const tobi_place *entry)
+{
+    const int turns = joint->kind == TOBI_BETWEEN_HINGE ||
+                      (joint->kind == TOBI_BETWEEN_BALL && scene->world.dimension == 2);
+    tobi_place motor = { entry, "motor", 0 };
+    if (!turns && tobi_motor_is_given(&joint->motor))
+        tobi_source_mistake_at_key(source, &motor, "is of a hinge, a %s joint has none", kinds[joint->kind]);
+    else tobi_joints_check_motor(source, &joint->motor, &motor);
+}
+
 static void check_hinge(const tobi_scene *scene, tobi_source *source, const tobi_joint_def *joint,
                         const tobi_place *entry)
 {
@@ -85,6 +97,7 @@ void tobi_joint_list_check(const tobi_scene *scene, tobi_source *source)
         check_bodies(scene, source, joint, &entry);
         check_axis(scene, source, joint, &entry);
         check_hinge(scene, source, joint, &entry);
+        check_motor(scene, source, joint, &entry);
     }
 }
 
@@ -92,8 +105,11 @@ json_t *tobi_joint_list_write_json(const tobi_scene *scene)
 {
     json_t *list = json_array();
     int failed = 0;
-    for (int k = 0; k < scene->joint_count; k++)
-        failed |= json_array_append_new(list, tobi_write_def(&tobi_joint_table, &scene->joints[k]));
+    for (int k = 0; k < scene->joint_count; k++) {
+        json_t *joint = tobi_write_def(&tobi_joint_table, &scene->joints[k]);
+        if (!tobi_motor_is_given(&scene->joints[k].motor)) json_object_del(joint, "motor");
+        failed |= json_array_append_new(list, joint);
+    }
     if (!failed) return list;
     json_decref(list);
     return NULL;

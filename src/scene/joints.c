@@ -29,6 +29,15 @@ static void check_stops(tobi_source *source, const tobi_place *joint, double low
         tobi_source_mistake(source, &high, "is %.10g, must be 0 or above: the body starts at 0", upper);
 }
 
+void tobi_joints_check_motor(tobi_source *source, const tobi_motor_def *def, const tobi_place *motor)
+{
+    tobi_error why = { 0 };
+    if (tobi_motor_check(def, &why) == TOBI_OK) return;
+    tobi_place key = { motor, why.key, 0 };
+    if (why.key[0]) tobi_source_mistake_at_key(source, &key, "%s", why.text);
+    else tobi_source_mistake(source, motor, "%s", why.text);
+}
+
 static void check_hinge(const tobi_scene *scene, tobi_source *source, const tobi_body_def *def,
                         const json_t *given, const tobi_place *hinge)
 {
@@ -38,6 +47,8 @@ static void check_hinge(const tobi_scene *scene, tobi_source *source, const tobi
     else if (def->hinge_axis[0] != 0 || def->hinge_axis[1] != 0 || def->hinge_axis[2] == 0)
         tobi_source_mistake(source, &axis, "must be along z in a 2-D scene");
     check_stops(source, hinge, def->hinge_lower, def->hinge_upper);
+    tobi_place motor = { hinge, "motor", 0 };
+    tobi_joints_check_motor(source, &def->hinge_motor, &motor);
 }
 
 static void check_guide(const tobi_scene *scene, tobi_source *source, const tobi_body_def *def,

@@ -75,6 +75,8 @@ static json_t *write_body(const tobi_scene *scene, const tobi_scene_body *body)
     int failed = 0;
     tobi_unused_drop(scene, &tobi_body_table, &body->def, object);
     drop_shapes(&body->def, object);
+    if (!tobi_motor_is_given(&body->def.hinge_motor))
+        json_object_del(json_object_get(object, "hinge"), "motor");
     if (is_zero(body->def.hinge_axis)) json_object_del(object, "hinge");
     if (is_zero(body->def.guide_axis)) json_object_del(object, "guide");
     if (body->motion_def[0].table)

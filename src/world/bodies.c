@@ -2,6 +2,7 @@
    a vessel is a body. */
 #include "world/absorb.h"
 #include "world/bodies.h"
+#include "world/motors.h"
 #include "base/error.h"
 #include "rigid/dynamics.h"
 #include <math.h>
@@ -27,6 +28,7 @@ tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
     tobi_system *s = &w->system[0];
     tobi_rigid_world world;
     if (!tobi_body_any_free(s->sim->bodies, s->sim->body_count) || w->dynamics) return TOBI_OK;
+    TOBI_TRY(tobi_motors_start(w, err));
     TOBI_TRY(tobi_constraints_start(&w->sim.constraints, w->sim.bodies, s->box.dimension, err));
     char *notes = malloc(NOTES);
     if (!notes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for notes");

@@ -35,7 +35,8 @@ static int falls_to_floor(const tobi_world_def *d)
 static int is_closed(const tobi_world *w)
 {
     const tobi_simulation *s = &w->sim;
-    if (w->drive || s->opening_count || w->line_count || s->constraints.count || s->wall_speed > 0) return 0;
+    if (w->drive || s->opening_count || w->line_count || s->constraints.count || w->motor_count) return 0;
+    if (s->wall_speed > 0) return 0;
     for (int k = 0; k < s->body_count; k++)
         if (gives_energy(&s->bodies[k])) return 0;
     for (int k = 0; k < w->system_count; k++)

@@ -5,6 +5,7 @@
 #include "base/param.h"
 #include "core/constraint.h"
 #include "geom/vec3.h"
+#include "world/motors.h"
 #include "world/names.h"
 #include <math.h>
 #include <stdio.h>
@@ -55,6 +56,9 @@ static tobi_status take_hinge(const tobi_joint_def *def, int dimension, tobi_con
     if (!hinge && (acts || stops))
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': a %s joint has no stops, spring "
                                           "or damper; a hinge has", def->name, kinds[def->kind]), "kind");
+    if (!hinge && tobi_motor_is_given(&def->motor))
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': a %s joint has no motor; a hinge "
+                                          "has", def->name, kinds[def->kind]), "motor");
     if (def->rest != 0 && !(def->stiffness > 0))
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': rest is of a spring, which needs "
                                           "a stiffness", def->name), "rest");
@@ -64,6 +68,18 @@ static tobi_status take_hinge(const tobi_joint_def *def, int dimension, tobi_con
     j->rest = def->rest*degree;
     j->damping = def->damping;
     return TOBI_OK;
+}
+
+/* To a body that a motion turns its angle would be that to a body at rest. */
+static tobi_status check_motor(const tobi_world *w, const tobi_joint_def *def, const tobi_constraint *j,
+                               tobi_error *err)
+{
+    const tobi_body *b = j->body[1] >= 0 ? &w->sim.bodies[j->body[1]] : NULL;
+    if (!tobi_motor_is_given(&def->motor) || !b || b->rigid.kind != TOBI_PRESCRIBED || !b->motion)
+        return TOBI_OK;
+    return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "joint '%s': body '%s' has a motion; allowed is "
+                                      "a motor against a body that moves by forces, one that rests, and the "
+                                      "domain", def->name, def->to_body), "motor");
 }
 
 static tobi_status check_axis(const tobi_joint_def *def, int dimension, tobi_constraint *j, double axis[3],
@@ -121,18 +137,20 @@ tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_
     TOBI_TRY(check_bodies(w, def, &j, err));
     TOBI_TRY(tobi_at_key(err, check_axis(def, w->system[0].box.dimension, &j, axis, err), "axis"));
     TOBI_TRY(take_hinge(def, w->system[0].box.dimension, &j, err));
+    TOBI_TRY(check_motor(w, def, &j, err));
     snprintf(j.name, sizeof j.name, "%s", def->name);
     for (int side = 0; side < 2; side++) localize(w, def->point, axis, side, &j);
     tobi_constraint *more = realloc(c->at, (size_t)(c->count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a joint");
     c->at = more;
+    TOBI_TRY(tobi_motors_add(w, &def->motor, "motor", c->count, -1, err));
     c->at[c->count++] = j;
     return TOBI_OK;
 }
 
 int tobi_world_joint_count(const tobi_world *w)
 {
-    int count = w ? w->sim.constraints.count : 0;
+    int count = w ? tobi_motors_joint_count(w) : 0;
     for (int k = 0; w && k < w->sim.body_count; k++) count += w->sim.bodies[k].rigid.joint.kind != 0;
     return count;
 }
@@ -144,6 +162,11 @@ static const char *find_own(const tobi_world *w, int number, tobi_joint_info *in
         const tobi_body *b = &w->sim.bodies[k];
         if (!b->rigid.joint.kind || number-- > 0) continue;
         if (info) *info = b->rigid.joint.info;
+        const tobi_constraint *motor = tobi_motors_of_body(w, k);
+        if (info && motor) info->motor_torque = motor->info.motor_torque;
+        if (info && motor) info->power += motor->info.power;
+        if (info) info->has_motor = motor != NULL;
+        if (info) info->has_power = motor || b->rigid.joint.damping > 0;
         return b->name;
     }
     return NULL;
@@ -153,7 +176,10 @@ const char *tobi_world_joint(const tobi_world *w, int joint, tobi_joint_info *in
 {
     if (!w || joint < 0) return NULL;
     const tobi_constraints *c = &w->sim.constraints;
-    if (joint >= c->count) return find_own(w, joint - c->count, info);
+    const int count = tobi_motors_joint_count(w);
+    if (joint >= count) return find_own(w, joint - count, info);
     if (info) *info = c->at[joint].info;
+    if (info) info->has_motor = c->at[joint].motor.kind != TOBI_MOTOR_NONE;
+    if (info) info->has_power = info->has_motor || c->at[joint].damping > 0;
     return c->at[joint].name;
 }

@@ -2,6 +2,31 @@
 #include "base/param_rows.h"
 #include "base/param.h"
 
+#define MOTOR(key_of, type, motor) \
+    { .key = key_of "speed", REAL, AT(type, motor.speed), .def = { TOBI_NOT_GIVEN }, RANGE(-1e6, 1e6), \
+      .unit = "degrees/s", .text = "none", \
+      .doc = "Of a motor: the speed that the hinge turns at, by the right-hand rule. A motor has one of " \
+             "speed, angle, torque and file." }, \
+    { .key = key_of "angle", REAL, AT(type, motor.angle), .def = { TOBI_NOT_GIVEN }, ANGLE, \
+      .unit = "degrees", .text = "none", .doc = "Or the angle that it turns to, from the start." }, \
+    { .key = key_of "torque", REAL, AT(type, motor.torque), .def = { TOBI_NOT_GIVEN }, RANGE(-1e8, 1e8), \
+      .unit = "N m", .text = "none", .doc = "Or the torque about the axis on the body." }, \
+    { .key = key_of "file", TEXT, AT(type, motor.file), .unit = "path", \
+      .doc = "Or a CSV file: time (s) and one of speed, angle and torque, in these units. Cubic between " \
+             "the rows; before the first and after the last it stays." }, \
+    { .key = key_of "amplitude", REAL, AT(type, motor.amplitude), RANGE(-1e8, 1e8), .unit = "1", \
+      .doc = "amplitude sin(2 pi t/period + phase) is added to speed, angle or torque, in its unit." }, \
+    { .key = key_of "period", REAL, AT(type, motor.period), DURATION, .unit = "s", .text = "none", \
+      .doc = "Time of one cycle of that." }, \
+    { .key = key_of "phase", REAL, AT(type, motor.phase), RANGE(-1e9, 1e9), .unit = "degrees", \
+      .doc = "Phase at time 0." }, \
+    { .key = key_of "start", REAL, AT(type, motor.start), RANGE(-1e9, 1e9), .unit = "s", \
+      .doc = "Until then speed, angle or torque is 0; the sine counts from time 0 all the same." }, \
+    { .key = key_of "ramp", REAL, AT(type, motor.ramp), RANGE(0, 1e9), .unit = "s", \
+      .doc = "It grows like (1 - cos(pi s/ramp))/2 in so many seconds after start." }, \
+    { .key = key_of "torque_max", REAL, AT(type, motor.torque_max), RANGE(1e-15, 1e15), .unit = "N m", \
+      .text = "unlimited", .doc = "Of a speed or an angle: the largest torque of the motor, of either sign." }
+
 static const tobi_param body_rows[] = {
     { .key = "name", TEXT, AT(tobi_body_def, name), .unit = "name", .text = "body",
       .required = true,
@@ -151,6 +176,7 @@ static const tobi_param body_rows[] = {
       .doc = "Of a spring that pulls the hinge back to where it starts." },
     { .key = "hinge.damping", REAL, AT(tobi_body_def, hinge_damping), RANGE(0, 1e15), .unit = "N m s/rad",
       .doc = "Of a damper at the hinge." },
+    MOTOR("hinge.motor.", tobi_body_def, hinge_motor),
     { .key = "guide.axis", VEC3, AT(tobi_body_def, guide_axis), DIRECTION, .unit = "1",
       .doc = "Direction of the fixed axis that a free or controlled body slides along; it does not turn." },
     { .key = "guide.lower", REAL, AT(tobi_body_def, guide_lower), PLACE, .unit = "m",
@@ -223,6 +249,7 @@ static const tobi_param joint_rows[] = {
       .doc = "Angle at which the spring is without moment; the bodies start at 0." },
     { .key = "damping", REAL, AT(tobi_joint_def, damping), RANGE(0, 1e12), .unit = "N m s/rad",
       .doc = "Of a damper in a hinge." },
+    MOTOR("motor.", tobi_joint_def, motor),
     { 0 }
 };
 

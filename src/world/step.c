@@ -6,6 +6,7 @@
 #include "world/acceleration.h"
 #include "world/beside.h"
 #include "world/bodies.h"
+#include "world/motors.h"
 #include "world/openings.h"
 #include "world/runaway.h"
 #include "base/error.h"
@@ -204,6 +205,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     TOBI_TRY(tobi_world_sample_drive(w, err));
     TOBI_TRY(choose_dt(w, max_dt, substeps, err));
     TOBI_TRY(tobi_world_drive(w, err));
+    TOBI_TRY(tobi_motors_tell(w, s->time, s->dt, err));
     tobi_absorb_predict(w);
     TOBI_TRY(predict_bodies(s, err));
     s->changed = 1;

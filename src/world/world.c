@@ -10,6 +10,7 @@
 #include "world/change.h"
 #include "world/fit.h"
 #include "world/limits.h"
+#include "world/motors.h"
 #include "world/names.h"
 #include "world/note_pieces.h"
 #include "world/openings.h"
@@ -98,6 +99,7 @@ void tobi_world_destroy(tobi_world *w)
     tobi_openings_free(w);
     free(w->lines);
     tobi_constraints_free(&w->sim.constraints);
+    tobi_motors_free(w);
     tobi_world_drop_notes(w, 0);
     free(w->notes);
     free(w->texture);
@@ -196,6 +198,8 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
         status = tobi_world_read_image(w, "body", b->name, def->texture, b->mesh.texture, err);
     const int notes = w->note_count;
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", b->name, b->mesh.notes, err);
+    if (status == TOBI_OK)
+        status = tobi_motors_add(w, &def->hinge_motor, "hinge.motor", -1, s->sim->body_count, err);
     if (status == TOBI_OK) s->sim->body_count++;
     else {
         tobi_body_free(b);

@@ -10,6 +10,7 @@
 typedef struct tobi_probe { tobi_probe_def def; char name[104]; int body; } tobi_probe;
 
 typedef struct tobi_drive tobi_drive;
+typedef struct tobi_motor_source tobi_motor_source;
 
 /* A particle near an outlet: coordinates along normal, along, across, m; its row and id. */
 typedef struct tobi_beyond { double at[3]; int64_t row, id; } tobi_beyond;
@@ -29,6 +30,8 @@ struct tobi_world {
     int region_count;
     struct tobi_line *lines;       /* rigid/lines.h                                            */
     int line_count;
+    tobi_motor_source *motors;     /* owned: what motors of hinges are told, motors.c             */
+    int motor_count;
     tobi_probe *probes;
     int probe_count;
     int32_t *chosen;               /* owned: rows that an outlet takes or copies, of the step at hand */

@@ -67,12 +67,38 @@ for method in dfsph wcsph isph eisph; do
     told=$([ $method = dfsph ] && echo "scatters by")
     expect 0 "$told" run both.json --out whole --quiet --force --threads 1 --set method=$method
     check "$method: joints in water with soft solids are closed" \
-        awk -F, 'NR > 1 && ($6 > 1e-12 || $11 > 1e-12 || $16 > 1e-12 || $0 ~ /nan/) { bad = 1 }
+        awk -F, 'NR > 1 && ($6 > 1e-12 || $12 > 1e-12 || $17 > 1e-12 || $0 ~ /nan/) { bad = 1 }
                  END { exit bad || NR < 8 }' whole/joints.csv
     expect 0 "" run both.json --out parts --quiet --force --threads 2 --until 0.05 --set method=$method
     expect 0 "" resume parts --quiet --threads 2 --until 0.1
     check "$method: the same after a resume, with two threads" cmp whole/joints.csv parts/joints.csv
 done
+
+cat > motors.json <<'END2'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.025, "end_time": 0.1,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.3] } } ] } ],
+  "bodies": [ { "name": "flap", "box": { "min": [0.2, 0.05], "max": [0.25, 0.4] }, "dynamics": "free",
+                "hinge": { "point": [0.225, 0.05], "motor": { "file": "angles.csv" } } },
+              { "name": "hull", "box": { "min": [0.5, 0.2], "max": [0.75, 0.4] }, "dynamics": "free", "density": 500 },
+              { "name": "fin", "box": { "min": [0.77, 0.24], "max": [0.95, 0.28] }, "dynamics": "free" } ],
+  "joints": [ { "name": "tail", "body": "fin", "to_body": "hull", "point": [0.76, 0.26],
+                "motor": { "speed": 0, "amplitude": 300, "period": 0.2, "torque_max": 1 } } ],
+  "output": { "interval": 0.05 } }
+END2
+printf 'time,angle\n0,0\n0.04,2\n0.08,8\n' > angles.csv
+for method in dfsph wcsph isph eisph; do
+    told=$([ $method = dfsph ] && echo "scatters by")
+    expect 0 "$told" run motors.json --out whole --quiet --force --threads 1 --set method=$method
+    check "$method: torque and power of motors" test "$(head -1 whole/joints.csv | cut -d, -f5-8,13-)" = \
+        "tail_angle [degrees],tail_gap [m],tail_motor_torque [N m],tail_power [W],flap_gap [m],flap_motor_torque [N m],flap_power [W]"
+    check "$method: an angle by a file is kept, a torque is at its bound" \
+        awk -F, 'NR > 1 && ($1 > 0.08 && ($12 - 8)^2 > 1e-16 || $7^2 > 1.000001) { bad = 1 }
+                 NR > 1 && $7^2 > 0.999999 { bound = 1 } END { exit bad || !bound }' whole/joints.csv
+    expect 0 "" run motors.json --out parts --quiet --force --threads 2 --until 0.05 --set method=$method
+    expect 0 "" resume parts --quiet --threads 2 --until 0.1
+    check "$method: motors are the same after a resume, with two threads" cmp whole/joints.csv parts/joints.csv
+done
+check "resolved.json has the motors" grep -q '"amplitude": 300' whole/resolved.json
 
 "$program" check rafts.json --set joints.hinge.stiffness=1e9 > out.txt 2>&1
 check "check tells the steps of a stiff spring" grep -q "^time step  *about [0-9.]*e-0[5-9] s" out.txt

@@ -1,0 +1,122 @@
+/* Motors of hinges. One by speed or angle is a row about the axis, like a stop: its impulse in a step has a
+   bound of either sign, and beyond it the row is none. So it drives as strongly as it must, the pressure of a
+   liquid knows it, and nothing is to be remembered: whether it was obeyed, speed or angle show
+   (docs/decisions/0134-motors.md). Drawback: at its bound a liquid's pressure knows it one step later. */
+#include "core/constraint.h"
+#include "geom/vec3.h"
+#include <math.h>
+
+#define OBEYED 1e-7              /* rad, rad/s, or a share of the speed: it does what it is told          */
+#define ROUNDING 1e-12           /* of the bound                                                         */
+
+/* The stops of the hinge, with those of a body's own. */
+static void find_stops(const tobi_constraint *j, const tobi_body *bodies, double *lower, double *upper)
+{
+    const tobi_joint *own = &bodies[j->body[0]].rigid.joint;
+    *lower = j->kind == TOBI_BETWEEN_MOTOR ? own->lower : j->lower;
+    *upper = j->kind == TOBI_BETWEEN_MOTOR ? own->upper : j->upper;
+    if (*lower < *upper) return;
+    *lower = -INFINITY;
+    *upper = INFINITY;
+}
+
+/* Which way it is to turn. */
+static double find_way(const tobi_constraint *j, double angle)
+{
+    const tobi_motor *m = &j->motor;
+    return m->kind == TOBI_MOTOR_SPEED ? m->value : remainder(m->value - angle, 2*acos(-1));
+}
+
+void tobi_motors_begin(tobi_constraints *c, tobi_body *bodies, double dt)
+{
+    c->dt = dt;
+    for (int k = 0; k < c->count; k++) {
+        tobi_constraint *j = &c->at[k];
+        double lower, upper;
+        j->rate_before = tobi_constraint_rate(j, bodies);
+        if (j->kind != TOBI_BETWEEN_MOTOR || j->motor.kind == TOBI_MOTOR_TORQUE) continue;
+        const double angle = tobi_constraint_angle(j, bodies, 0), way = find_way(j, angle);
+        find_stops(j, bodies, &lower, &upper);
+        bodies[j->body[0]].rigid.joint.pulled = way < 0 ? angle > lower : way > 0 && angle < upper;
+    }
+}
+
+/* Back to where it should be, no faster than it can brake: v^2 = a s, half of what its torque alone stops. */
+static double find_rate(const tobi_constraint *j, double angle, double dt, double mobility)
+{
+    const tobi_motor *m = &j->motor;
+    if (m->kind == TOBI_MOTOR_SPEED) return m->value;
+    if (isinf(m->most)) return find_way(j, angle)/dt;
+    const double lag = remainder(m->before - angle, 2*acos(-1));
+    const double brake = sqrt(m->most*fmax(mobility, 0)*fabs(lag));
+    return (m->value - m->before)/dt + copysign(fmin(fabs(lag)/dt, brake), lag);
+}
+
+void tobi_motor_aim(tobi_constraint *j, const tobi_body *bodies, double dt, double mobility)
+{
+    tobi_motor *m = &j->motor;
+    double lower, upper;
+    if (m->kind == TOBI_MOTOR_TORQUE) return;
+    const double angle = tobi_constraint_angle(j, bodies, 0);
+    find_stops(j, bodies, &lower, &upper);
+    m->goal = fmin(fmax(angle + dt*find_rate(j, angle, dt, mobility), lower), upper);
+    m->rate = (m->goal - angle)/dt;
+}
+
+double tobi_motor_gap(const tobi_constraint *j, const tobi_body *bodies)
+{
+    return remainder(j->motor.goal - tobi_constraint_angle(j, bodies, 1), 2*acos(-1));
+}
+
+int tobi_motor_follows(const tobi_constraint *j, const tobi_body *bodies)
+{
+    const tobi_motor *m = &j->motor;
+    if (m->kind == TOBI_MOTOR_ANGLE)
+        return fabs(remainder(m->before - tobi_constraint_angle(j, bodies, 0), 2*acos(-1))) <= OBEYED;
+    return fabs(m->before - tobi_constraint_rate(j, bodies)) <= OBEYED*(1 + fabs(m->before));
+}
+
+void tobi_motor_bound(const tobi_constraints *c, const tobi_constraint *j, tobi_constraint_row *row,
+                      double share)
+{
+    row->most = c->dt > 0 ? share*c->dt*j->motor.most : 0;
+    row->taken = -j->motor.impulse;
+}
+
+int tobi_motor_limit(tobi_constraints *c, int row)
+{
+    tobi_constraint_row *r = &c->row[row];
+    const double sum = r->taken + c->impulse[row];
+    if (!r->active || fabs(sum) <= r->most*(1 + ROUNDING)) return 0;
+    tobi_constraints_change(c, row, copysign(r->most, sum) - sum);
+    r->active = 0;
+    r->released = 1;
+    return 1;
+}
+
+int tobi_motor_engage(const tobi_constraints *c, tobi_constraint_row *row, double impulse)
+{
+    const double sum = row->taken + impulse;
+    if (row->motor <= 0 || row->active || row->released || !(row->most > 0)) return 0;
+    if (fabs(sum) >= row->most*(1 - ROUNDING)) {
+        double error = row->pace;
+        for (int side = 0; side < 2; side++)
+            if (row->slot[side] >= 0)
+                error += vec3_dot(row->jacobian[side] + 3, c->speed[row->slot[side]] + 3);
+        if (!(error*sum > 0)) return 0;
+    }
+    row->active = 1;
+    return 1;
+}
+
+void tobi_motor_report(tobi_constraint *j, const tobi_body *bodies, double dt)
+{
+    const tobi_motor *m = &j->motor;
+    const double before = j->rate_before, now = tobi_constraint_rate(j, bodies);
+    double torque = 0;
+    if (m->kind == TOBI_MOTOR_TORQUE) torque = 0.5*(m->before + m->value);
+    else if (m->kind) torque = m->impulse/dt;
+    j->info.motor_torque = dt > 0 ? torque : 0;
+    const double damped = j->damping*(before*before + before*now + now*now)/3;
+    j->info.power = dt > 0 ? damped - 0.5*torque*(before + now) : 0;
+}
