@@ -248,7 +248,7 @@ static void stir(double spacing)
     OK(tobi_motion_rotation((double[3]){ 0.2, 0.2, 0 }, (double[3]){ 0, 0, 1 }, 180, &motion, &err));
     OK(tobi_motion_set_times(motion, 0, 1, 0.2, &err));
     add_driven_box(world, (double[2]){ 0.12, 0.19 }, (double[2]){ 0.28, 0.21 }, motion);
-    for (double t = 0; t < 5; t += info.dt) {
+    for (double t = 0; t < (SANITIZED ? 1.2 : 5); t += info.dt) {
         OK(tobi_world_step(world, 0, &info, &err));
         if (t < 1.05) before = info.kinetic_energy;
         assert_true(info.kinetic_energy <= 1.02*before || t < 1.05);
@@ -262,6 +262,7 @@ static void stirred_water_gains_no_energy(void **state)
 {
     (void)state;
     stir(0.0125);
+    if (SANITIZED) return;
     stir(0.01);
     stir(0.008);
 }
@@ -457,13 +458,13 @@ static void a_square_in_a_full_vessel(void **state)
     tobi_world *w;
     (void)state;
     OK(start_scene(text, &w, &err));
-    for (int k = 1; k <= 6; k++) {
+    for (int k = 1; k <= (SANITIZED ? 1 : 6); k++) {
         OK(tobi_world_advance(w, 0.5*k, &info, &err));
         const double rise = w->sim.bodies[0].rigid.position[1] - 0.25, work = 0.01*5*9.81*rise;
         print_message("%g s: rises by %.3g m, %.2g J/m of %.2g\n", 0.5*k, rise, info.kinetic_energy, work);
         if (!(info.kinetic_energy < work)) fail_msg("%g J/m of %g", info.kinetic_energy, work);
     }
-    assert_true(w->sim.bodies[0].rigid.position[1] > 0.3);
+    assert_true(SANITIZED || w->sim.bodies[0].rigid.position[1] > 0.3);
     tobi_world_destroy(w);
 }
 
@@ -478,9 +479,9 @@ static void a_pool_rests(void **state)
     tobi_world *w;
     (void)state;
     OK(start_scene(text, &w, &err));
-    OK(tobi_world_advance(w, 8, &info, &err));
+    OK(tobi_world_advance(w, SANITIZED ? 0.5 : 8, &info, &err));
     print_message("pool of 320 kg/m: %.2g J/m after 8 s\n", info.kinetic_energy);
-    assert_true(info.kinetic_energy < 0.5*320*1e-4*1e-4);        /* 0.1 mm/s */
+    assert_true(SANITIZED || info.kinetic_energy < 0.5*320*1e-4*1e-4);        /* 0.1 mm/s */
     tobi_world_destroy(w);
 }
 
@@ -495,18 +496,19 @@ static void a_slosh_stays_clean(void **state)
         "{ \"box\": { \"min\": [0.4, 0], \"max\": [0.8, 0.4] } } ] } ] }";
     tobi_step_info info;
     tobi_world *w;
+    const double late = SANITIZED ? 0 : 8;
     double least = INFINITY, most = 0;
     (void)state;
     OK(start_scene(text, &w, &err));
-    OK(tobi_world_advance(w, 8, &info, &err));
-    for (int k = 1; k <= 40; k++) {
-        OK(tobi_world_advance(w, 8 + 0.05*k, &info, &err));
+    if (late > 0) OK(tobi_world_advance(w, late, &info, &err));
+    for (int k = 1; k <= (SANITIZED ? 10 : 40); k++) {
+        OK(tobi_world_advance(w, late + 0.05*k, &info, &err));
         least = fmin(least, info.kinetic_energy);
         most = fmax(most, info.kinetic_energy);
     }
     print_message("a slosh of %.2g J/m is %.2g J/m at least after 8 s\n", most, least);
-    assert_true(least < 0.06);
-    assert_true(most > 0.2 && most < 0.45);
+    assert_true(SANITIZED || least < 0.06);
+    assert_true(SANITIZED || (most > 0.2 && most < 0.45));
     tobi_world_destroy(w);
 }
 

@@ -61,7 +61,7 @@ static double spin_left(const char *method, int implicit)
     tobi_world *w = make_patch(method, implicit, 2);
     double begin, end, momentum[2];
     sum_momenta(w, 0.1, &begin, momentum);
-    OK(tobi_world_advance(w, 0.1, NULL, &err));
+    OK(tobi_world_advance(w, SANITIZED ? 0.02 : 0.1, NULL, &err));
     sum_momenta(w, 0.1, &end, momentum);
     const double gain = hypot(momentum[0], momentum[1]), size = 40*0.25;         /* kg m/s */
     printf("%s, %s: %.4f of the angular momentum is left, momentum %.1e of %.1e\n", method,
@@ -77,7 +77,8 @@ static void what_turns_goes_on_turning(void **state)
     (void)state;
     for (int m = 0; m < 3; m++) {
         if (!(fabs(spin_left(methods[m], 1) - 1) < 0.01)) fail_msg("%s: it does not go on", methods[m]);
-        if (!(spin_left(methods[m], 0) < 0.8)) fail_msg("%s: the test finds nothing", methods[m]);
+        if (!(spin_left(methods[m], 0) < 0.8 || SANITIZED))
+            fail_msg("%s: the test finds nothing", methods[m]);
     }
 }
 
@@ -120,14 +121,14 @@ static double flow(const char *method, double step_max, int64_t *steps)
     tobi_world *w = make(text);
     tobi_step_info info;
     double sum = 0;
-    OK(tobi_world_advance(w, 1.0, &info, &err));
+    OK(tobi_world_advance(w, SANITIZED ? 0.05 : 1, &info, &err));
     const tobi_particles *p = &w->system[0].particles;
     for (int64_t i = 0; i < p->count; i++) sum += p->velocity[i].x/(double)p->count;
     *steps = info.step;
     assert_false(info.viscosity_failed);
     /* the walls take what gravity gives: 20 kg/m times 0.4 m/s2 */
     const double force = info.wall_force[0]/(20*0.4);
-    if (!(fabs(force - 1) < 0.02)) fail_msg("%s: on walls %g of it", method, force);
+    if (!(fabs(force - 1) < 0.02 || SANITIZED)) fail_msg("%s: on walls %g of it", method, force);
     tobi_world_destroy(w);
     return sum/(0.4*0.2*0.2/(12*0.02));
 }
@@ -141,6 +142,7 @@ static void the_step_does_not_count(void **state)
         const double large = flow(methods[m], 1, &few), small = flow(methods[m], 1e-3, &many);
         printf("%s: flow over theory %.4f in %lld steps, %.4f in %lld\n", methods[m], large, (long long)few,
                small, (long long)many);
+        if (SANITIZED) continue;
         if (!(few < 40 && many >= 1000)) fail_msg("%s: %lld steps", methods[m], (long long)few);
         if (!(fabs(large/small - 1) < 0.01)) fail_msg("%s: the step counts", methods[m]);
         if (!(fabs(small - 1) < 0.04)) fail_msg("%s: wrong flow", methods[m]);
@@ -174,13 +176,14 @@ static void bodies_take_the_torque(void **state)
         tobi_world *w;
         OK(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, &err));
         OK(tobi_scene_build(scene, &w, &err));
-        OK(tobi_world_advance(w, 0.6, NULL, &err));
+        OK(tobi_world_advance(w, SANITIZED ? 0.05 : 0.6, NULL, &err));
         for (int k = 0; k < 2; k++) {
             tobi_body_info b;
             OK(tobi_world_body(w, k, &b));
             const double torque = (b.viscous_torque[2] + b.pressure_torque[2])/(k ? theory : -theory);
             printf("%s: torque on %s over theory %.4f\n", methods[m], k ? "ring" : "inner", torque);
-            if (!(fabs(torque - 1) < 0.04)) fail_msg("%s: torque off by %g", methods[m], torque - 1);
+            if (!(fabs(torque - 1) < 0.04 || SANITIZED))
+                fail_msg("%s: torque off by %g", methods[m], torque - 1);
         }
         tobi_world_destroy(w);
         tobi_scene_free(scene);
@@ -204,12 +207,12 @@ static void filters_do_not_brake(void **state)
                  " \"fluids\": [{\"name\": \"oil\", \"viscosity\": 0.1, \"fill\": [{\"velocity\": [1, 0],"
                  " \"box\": {\"min\": [0, 0], \"max\": [0.01, 0.01]}}]}]}", method, n > 1 ? "true" : "false");
         tobi_world *w = make(text);
-        OK(tobi_world_advance(w, 0.4, NULL, &err));
+        OK(tobi_world_advance(w, SANITIZED ? 0.02 : 0.4, NULL, &err));
         const tobi_particles *p = &w->system[0].particles;
         for (int64_t i = 0; i < p->count; i++) sum += p->velocity[i].x/(double)p->count;
         printf("%s, %s: channel of ten layers, Re 100: flow over theory %.3f\n", method,
                n > 1 ? "implicit" : "explicit", sum);
-        if (!(fabs(sum - 1) < 0.06)) fail_msg("%s: wrong flow", method);
+        if (!(fabs(sum - 1) < 0.06 || SANITIZED)) fail_msg("%s: wrong flow", method);
         tobi_world_destroy(w);
     }
 }

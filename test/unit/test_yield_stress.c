@@ -70,13 +70,14 @@ static void channels_flow_as_theory_says(void **state)
         for (int k = 0; k < 3; k++) {
             double flow, middle;
             tobi_world *w = make_channel(methods[m], &kinds[k], 0, 1);
-            OK(tobi_world_advance(w, 1, NULL, &err));
+            OK(tobi_world_advance(w, SANITIZED ? 0.1 : 1, NULL, &err));
             compare(w, &kinds[k], &flow, &middle);
             print_message("%s, yield stress %g Pa, index %g: flow %.3f, middle %.3f of theory\n", methods[m],
                           kinds[k].yield_stress, kinds[k].flow_index, flow, middle);
+            tobi_world_destroy(w);
+            if (SANITIZED) continue;
             assert_float_equal(flow, 1, tolerance[m]);
             assert_float_equal(middle, 1, tolerance[m]);
-            tobi_world_destroy(w);
         }
 }
 
@@ -88,13 +89,13 @@ static void bodies_brake_as_sides_do(void **state)
         double flow[2], middle;
         for (int boxes = 0; boxes < 2; boxes++) {
             tobi_world *w = make_channel(methods[m], &mud, boxes, 1);
-            OK(tobi_world_advance(w, 0.5, NULL, &err));
+            OK(tobi_world_advance(w, SANITIZED ? 0.05 : 0.5, NULL, &err));
             compare(w, &mud, &flow[boxes], &middle);
             tobi_world_destroy(w);
         }
         print_message("%s: flow %.4f of theory between boxes, %.4f between sides\n", methods[m], flow[1],
                       flow[0]);
-        assert_float_equal(flow[1], flow[0], 0.03);
+        if (!SANITIZED) assert_float_equal(flow[1], flow[0], 0.03);
     }
 }
 
@@ -124,19 +125,20 @@ static void heaps_stand(void **state)
                      " \"fill\": [{\"box\": {\"min\": [-0.05, 0], \"max\": [0.05, 0.1]}}]}]}",
                      methods[m], stiff ? 1500 : 100);
             OK(start_scene(text, &w, &err));
-            OK(tobi_world_advance(w, 0.2, NULL, &err));
+            OK(tobi_world_advance(w, SANITIZED ? 0.02 : 0.2, NULL, &err));
             const double then = find_top(w);
-            OK(tobi_world_advance(w, 0.4, NULL, &err));
+            OK(tobi_world_advance(w, SANITIZED ? 0.04 : 0.4, NULL, &err));
             const double now = find_top(w);
+            tobi_world_destroy(w);
             print_message("%s, %d Pa: the top has come to %.4f, then to %.4f m\n", methods[m],
                           stiff ? 1500 : 100, then, now);
+            if (SANITIZED) continue;
             if (stiff) {
                 assert_float_equal((now + 0.005)/0.1, 1, 0.02);
                 if (m < 3) assert_float_equal(now, then, 0.01*0.2*0.1);
             } else {
                 assert_true((now + 0.005)/0.1 < 0.85);
             }
-            tobi_world_destroy(w);
         }
 }
 
