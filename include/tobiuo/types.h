@@ -148,6 +148,8 @@ typedef void (*tobi_steer_fn)(void *user, const double steer[3]);
 /* At rest or moved by a motion, whatever pushes; by forces; by forces and a program's force and torque. */
 typedef enum tobi_dynamics { TOBI_PRESCRIBED, TOBI_FREE, TOBI_CONTROLLED } tobi_dynamics;
 
+/* Numbers that a control program keeps from step to step. */
+enum { TOBI_CONTROL_STATE = 16 };
 /* What a control program sees of its body, in world axes, and what it answers. */
 typedef struct tobi_control_input {
     double time;                /* s                                                                 */
@@ -158,10 +160,12 @@ typedef struct tobi_control_input {
     double contact_force[3];    /* N, of particles, bodies and sides, mean over the last step        */
     double contact_torque[3];   /* N m about the centre of mass                                      */
     double mass;                /* kg                                                                */
+    double inertia[6];          /* kg m2 about the centre, now: xx, yy, zz, xy, xz, yz               */
     int    phase;               /* 1 at the start, then what the program said last                   */
     double phase_time;          /* s since this phase began                                          */
     double step;                /* s, length of the last step                                        */
     double steer[3];            /* what the program said last; 0 at the start                        */
+    double state[TOBI_CONTROL_STATE];   /* the same                                                  */
 } tobi_control_input;
 typedef struct tobi_control_output {
     double force[3];            /* N on the centre of mass                                           */
@@ -169,9 +173,10 @@ typedef struct tobi_control_output {
     int    phase;               /* of the next step on                                               */
     const char *hold;           /* axes held still in this step, like tobi_body_def.locked, or NULL  */
     double steer[3];            /* numbers for the motion of a body that changes its shape           */
+    double state[TOBI_CONTROL_STATE];   /* of the next step on, for the program alone: integrals, filters */
 } tobi_control_output;
 /* Must be a pure function of its input, or restarts would not repeat a run. out holds zeros and the input's
-   phase and steer when it is called. hold must stay valid until the next call. */
+   phase, steer and state when it is called. hold must stay valid until the next call. */
 typedef tobi_status (*tobi_control_fn)(void *user, const tobi_control_input *in,
                                        tobi_control_output *out, tobi_error *err);
 

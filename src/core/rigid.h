@@ -21,6 +21,7 @@ typedef struct tobi_rigid {
     double force[3], torque[3];      /* N, N m: constant, in world axes                                 */
     tobi_control_fn control;         /* of a controlled body                                            */
     void *control_user;
+    double memory[TOBI_CONTROL_STATE];  /* numbers that it keeps, in checkpoints                        */
     tobi_joint joint;
 
     /* The state: TOBI_RIGID_DOUBLES doubles from here on, all that a restart needs. */

@@ -57,6 +57,19 @@ void tobi_rigid_follow(tobi_dynamics_state *d)
     for (int k = 0; k < d->count; k++) tobi_shape_follow(&d->shapes[k], &d->bodies[k]);
 }
 
+/* About the centre in axes of the domain: xx, yy, zz, xy, xz, yz. */
+static void find_inertia(const tobi_rigid *r, double out[6])
+{
+    static const int row[6] = { 0, 1, 2, 0, 0, 1 }, column[6] = { 0, 1, 2, 1, 2, 2 };
+    double m[3][3];
+    tobi_quaternion_matrix(r->orientation, m);
+    for (int k = 0; k < 6; k++) {
+        out[k] = 0;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) out[k] += m[row[k]][i]*r->inertia[3*i + j]*m[column[k]][j];
+    }
+}
+
 /* Adds to force and torque; *bits: the axes to hold from now on. */
 static tobi_status run_control(tobi_body *b, double t, double dt, double force[3], double torque[3],
                                double *bits, tobi_error *err)
@@ -74,6 +87,9 @@ static tobi_status run_control(tobi_body *b, double t, double dt, double force[3
     memcpy(in.contact_torque, r->contact_torque, sizeof in.contact_torque);
     if (b->swimmer) memcpy(in.steer, b->swimmer->next_steer, sizeof in.steer);
     memcpy(out.steer, in.steer, sizeof out.steer);
+    memcpy(in.state, r->memory, sizeof in.state);
+    memcpy(out.state, in.state, sizeof out.state);
+    find_inertia(r, in.inertia);
     TOBI_TRY(r->control(r->control_user, &in, &out, err));
     int hold = tobi_rigid_axes(out.hold, unknown);
     if (hold < 0)
@@ -89,10 +105,12 @@ static tobi_status run_control(tobi_body *b, double t, double dt, double force[3
     double sum = 0;
     for (int a = 0; a < 3; a++) sum += 0*out.force[a] + 0*out.torque[a];
     for (int a = 0; a < 3; a++) sum += 0*out.steer[a];
+    for (int k = 0; k < TOBI_CONTROL_STATE; k++) sum += 0*out.state[k];
     if (sum != 0)      /* 0 times a number is 0 */
-        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program answered a force, torque or steer "
-                         "that is not finite at t = %.9g s", b->name, t);
+        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program answered a force, torque, "
+                         "steer or state that is not finite at t = %.9g s", b->name, t);
     if (b->swimmer) memcpy(b->swimmer->next_steer, out.steer, sizeof out.steer);
+    memcpy(r->memory, out.state, sizeof out.state);
     if (out.phase != in.phase) r->phase_start = t;
     r->phase = out.phase;
     *bits = hold;

@@ -359,7 +359,8 @@ tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_c
     TOBI_NEED(user, "the script");
     TOBI_NEED(in && out, "the input or the output");
     tobi_script *s = user;
-    double from[27] = { in->time }, into[10] = { 0, 0, 0, 0, 0, 0, in->phase };
+    enum { FROM = 33 + TOBI_CONTROL_STATE, INTO = 10 + TOBI_CONTROL_STATE };
+    double from[FROM] = { in->time }, into[INTO] = { 0, 0, 0, 0, 0, 0, in->phase };
     memcpy(from + 1, in->position, 3*sizeof *from);
     memcpy(from + 4, in->orientation, 4*sizeof *from);
     memcpy(from + 8, in->velocity, 3*sizeof *from);
@@ -371,22 +372,27 @@ tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_c
     from[22] = in->phase_time;
     from[23] = in->step;
     memcpy(from + 24, in->steer, 3*sizeof *from);
+    memcpy(from + 27, in->inertia, sizeof in->inertia);
+    memcpy(from + 33, in->state, sizeof in->state);
     memcpy(into + 7, in->steer, 3*sizeof *into);
+    memcpy(into + 10, in->state, sizeof in->state);
     memcpy(s->channel->from, from, sizeof from);
     memcpy(s->channel->to, into, sizeof into);
     const char *why = ask(s, TOBI_REQUEST_CONTROL);
     if (why) return tobi_fail(err, TOBI_SCRIPT, "%s: %s (t = %.9g s)", s->label, why, in->time);
     memcpy(into, s->channel->to, sizeof into);
-    for (int k = 0; k < 10; k++)
+    for (int k = 0; k < INTO; k++) {
+        const char *what = k < 3 ? "force" : k < 6 ? "torque" : k < 7 ? "phase" : k < 10 ? "steer" : "state";
         if (!(fabs(into[k]) <= (k != 6 ? DBL_MAX : 1e9)))
             return tobi_fail(err, TOBI_SCRIPT, "%s: control returned a %s that is not finite (t = %.9g s)",
-                             s->label,
-                             k < 3 ? "force" : k < 6 ? "torque" : k < 7 ? "phase" : "steer", in->time);
+                             s->label, what, in->time);
+    }
     copy_text(s->hold, s->channel->hold, sizeof s->hold);
     memcpy(out->force, into, sizeof out->force);
     memcpy(out->torque, into + 3, sizeof out->torque);
     out->phase = (int)into[6];
     memcpy(out->steer, into + 7, sizeof out->steer);
+    memcpy(out->state, into + 10, sizeof out->state);
     out->hold = s->hold;
     return TOBI_OK;
 }

@@ -18,17 +18,18 @@
 
      function control(t, body)          -- time (s) and what the body does, see below
          return { force = {x, y, z}, torque = {x, y, z}, phase = 2, hold = "z,turn",
-                  steer = {a, b, c} }
+                  steer = {a, b, c}, state = {a, b, ...} }
      end
 
    Every key of the answer may be left out, and no answer at all is no force. body has position (m),
    orientation (w, x, y, z), velocity, angular_velocity (rad/s), contact_force (N) and contact_torque (N m) of
    the last step as lists, and the numbers mass, phase, phase_time (s since the phase began) and step (s,
-   the last). steer is what it answered last, for deform() of the same body. The
-   force acts on the centre of mass, in world axes. phase, a whole number, is 1 at the start and then what the
-   script answered last: the only memory a script may have, since a restart begins with it; globals cannot be
-   assigned after loading, tables and locals outside control are not watched. hold names the axes that stand
-   still in this step, like `locked` of a body.
+   the last), and inertia: xx, yy, zz, xy, xz, yz (kg m2) about the centre, in world axes, now. steer is
+   what it answered last, for deform() of the same body; state likewise, up to 16 numbers for the program
+   alone. The force acts on the centre of mass, in world axes. phase, a whole number, is 1 at the start and
+   then what the script answered last. These three are the only memory a script may have, since a restart
+   begins with them; globals cannot be assigned after loading, tables and locals outside control are not
+   watched. hold names the axes that stand still in this step, like `locked` of a body.
 
    A flow script defines
 

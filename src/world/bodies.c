@@ -127,6 +127,9 @@ static tobi_status put_body(tobi_body *b, int k, tobi_store *f, tobi_error *err)
     TOBI_TRY(tobi_store_put(f, name, TOBI_F64, 7, 1, load, err));
     tobi_world_name_body(k, "_middle", name);
     TOBI_TRY(tobi_store_put(f, name, TOBI_F64, 3, 1, b->middle, err));
+    tobi_world_name_body(k, "_memory", name);
+    if (b->rigid.control)
+        TOBI_TRY(tobi_store_put(f, name, TOBI_F64, TOBI_CONTROL_STATE, 1, b->rigid.memory, err));
     tobi_world_name_body(k, "_edge", name);
     if (b->blade) TOBI_TRY(tobi_store_put(f, name, TOBI_F64, b->piece_count, 3, b->edge_share, err));
     return b->motion ? put_place(b, k, f, err) : TOBI_OK;

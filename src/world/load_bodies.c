@@ -20,6 +20,7 @@ struct tobi_loaded_body {
     double (*edge_share)[3];         /* [piece_count] of a blade, owned until taken               */
     tobi_edge_foot *edge_foot;
     int64_t piece_count;
+    double memory[TOBI_CONTROL_STATE];       /* of a control program                             */
     double absorb[TOBI_ABSORB_DOUBLES];      /* of a piston that absorbs                         */
 };
 
@@ -75,7 +76,11 @@ static tobi_status read_state(const tobi_body *b, int k, tobi_store *f, tobi_loa
     TOBI_TRY(tobi_store_get(f, name, TOBI_U8, (int64_t)sizeof l->info, 1, &l->info, err));
     TOBI_TRY(check_same(b, &l->info, err));
     TOBI_TRY(check_matter(b, k, f, &l->info, err));
+    tobi_world_name_body(k, "_memory", name);
+    if (b->rigid.control && tobi_store_has(f, name))         /* older ones have none */
+        TOBI_TRY(tobi_store_get(f, name, TOBI_F64, TOBI_CONTROL_STATE, 1, l->memory, err));
     int good = 1;
+    for (int i = 0; i < TOBI_CONTROL_STATE; i++) good &= isfinite(l->memory[i]) != 0;
     for (int i = 0; i < TOBI_RIGID_DOUBLES; i++) good &= isfinite(l->state[i]) != 0;
     for (int i = 0; i < 7; i++) good &= isfinite(l->load[i]) != 0;
     if (good) return TOBI_OK;
@@ -200,6 +205,7 @@ static void take_body(tobi_body *b, tobi_loaded_body *l)
 {
     tobi_rigid rigid = b->rigid;
     memcpy(TOBI_RIGID_STATE(&rigid), l->state, sizeof l->state);
+    memcpy(rigid.memory, l->memory, sizeof rigid.memory);
     memcpy(rigid.force, l->load, sizeof rigid.force);
     memcpy(rigid.torque, l->load + 3, sizeof rigid.torque);
     rigid.phase = fmin(fmax(rigid.phase, -1e9), 1e9);

