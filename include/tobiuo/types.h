@@ -150,6 +150,12 @@ typedef enum tobi_dynamics { TOBI_PRESCRIBED, TOBI_FREE, TOBI_CONTROLLED } tobi_
 
 /* Numbers that a control program keeps from step to step. */
 enum { TOBI_CONTROL_STATE = 16 };
+/* Joints that it sees: those of its body, the first so many. */
+enum { TOBI_CONTROL_JOINTS = 16 };
+typedef struct tobi_control_joint {
+    const char *name;           /* as in joints.csv: of the joint, or of a body with a hinge         */
+    double angle, speed;        /* degrees since the start, degrees/s: of body against to_body        */
+} tobi_control_joint;
 /* What a control program sees of its body, in world axes, and what it answers. */
 typedef struct tobi_control_input {
     double time;                /* s                                                                 */
@@ -166,6 +172,8 @@ typedef struct tobi_control_input {
     double step;                /* s, length of the last step                                        */
     double steer[3];            /* what the program said last; 0 at the start                        */
     double state[TOBI_CONTROL_STATE];   /* the same                                                  */
+    tobi_control_joint joints[TOBI_CONTROL_JOINTS];     /* hinges of the body                        */
+    int    joint_count;
 } tobi_control_input;
 typedef struct tobi_control_output {
     double force[3];            /* N on the centre of mass                                           */
@@ -173,10 +181,12 @@ typedef struct tobi_control_output {
     int    phase;               /* of the next step on                                               */
     const char *hold;           /* axes held still in this step, like tobi_body_def.locked, or NULL  */
     double steer[3];            /* numbers for the motion of a body that changes its shape           */
-    double state[TOBI_CONTROL_STATE];   /* of the next step on, for the program alone: integrals, filters */
+    double state[TOBI_CONTROL_STATE];   /* of the next step on, for the program alone: integrals     */
+    double motor[TOBI_CONTROL_JOINTS];  /* what the motor of each of the input's joints is told from the
+                                   next step on, degrees/s, degrees or N m; TOBI_NOT_GIVEN = as before */
 } tobi_control_output;
-/* Must be a pure function of its input, or restarts would not repeat a run. out holds zeros and the input's
-   phase, steer and state when it is called. hold must stay valid until the next call. */
+/* Must be a pure function of its input, or restarts would not repeat a run. At first out holds zeros, the
+   input's phase, steer and state, and TOBI_NOT_GIVEN. hold must stay valid until the next call. */
 typedef tobi_status (*tobi_control_fn)(void *user, const tobi_control_input *in,
                                        tobi_control_output *out, tobi_error *err);
 

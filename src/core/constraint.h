@@ -19,6 +19,8 @@ typedef struct tobi_motor {
     double before, value;                /* rad/s, rad, N m: asked for when the step begins and ends     */
     double rate, goal;                   /* rad/s, rad: what it tries in the step                       */
     double impulse;                      /* N m s about the axis on the body, in this step              */
+    int is_set;                          /* 1: a control program tells it: `set` from the next step on   */
+    double set, last;                    /* that, and `value` of the last step that was made             */
 } tobi_motor;
 
 /* A row: the change of one number by velocity and angular velocity of both bodies. */

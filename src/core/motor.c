@@ -111,9 +111,10 @@ int tobi_motor_engage(const tobi_constraints *c, tobi_constraint_row *row, doubl
 
 void tobi_motor_report(tobi_constraint *j, const tobi_body *bodies, double dt)
 {
-    const tobi_motor *m = &j->motor;
+    tobi_motor *m = &j->motor;
     const double before = j->rate_before, now = tobi_constraint_rate(j, bodies);
     double torque = 0;
+    m->last = m->value;
     if (m->kind == TOBI_MOTOR_TORQUE) torque = 0.5*(m->before + m->value);
     else if (m->kind) torque = m->impulse/dt;
     j->info.motor_torque = dt > 0 ? torque : 0;

@@ -2,6 +2,7 @@
    contacts between two steps are seen at the next. */
 #include "rigid/dynamics.h"
 #include "geom/vec3.h"
+#include "rigid/control.h"
 #include "rigid/dynamics_state.h"
 #include <stdlib.h>
 #include <string.h>
@@ -57,68 +58,6 @@ void tobi_rigid_follow(tobi_dynamics_state *d)
     for (int k = 0; k < d->count; k++) tobi_shape_follow(&d->shapes[k], &d->bodies[k]);
 }
 
-/* About the centre in axes of the domain: xx, yy, zz, xy, xz, yz. */
-static void find_inertia(const tobi_rigid *r, double out[6])
-{
-    static const int row[6] = { 0, 1, 2, 0, 0, 1 }, column[6] = { 0, 1, 2, 1, 2, 2 };
-    double m[3][3];
-    tobi_quaternion_matrix(r->orientation, m);
-    for (int k = 0; k < 6; k++) {
-        out[k] = 0;
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++) out[k] += m[row[k]][i]*r->inertia[3*i + j]*m[column[k]][j];
-    }
-}
-
-/* Adds to force and torque; *bits: the axes to hold from now on. */
-static tobi_status run_control(tobi_body *b, double t, double dt, double force[3], double torque[3],
-                               double *bits, tobi_error *err)
-{
-    tobi_rigid *r = &b->rigid;
-    tobi_control_input in = { .time = t, .mass = r->mass, .phase = (int)r->phase,
-                              .phase_time = t - r->phase_start, .step = dt };
-    tobi_control_output out = { .phase = in.phase };
-    char unknown[32];
-    vec3_add_scaled(in.position, b->lower, 1, r->position);
-    memcpy(in.orientation, r->orientation, sizeof in.orientation);
-    memcpy(in.velocity, r->velocity, sizeof in.velocity);
-    memcpy(in.angular_velocity, r->angular_velocity, sizeof in.angular_velocity);
-    memcpy(in.contact_force, r->contact_force, sizeof in.contact_force);
-    memcpy(in.contact_torque, r->contact_torque, sizeof in.contact_torque);
-    if (b->swimmer) memcpy(in.steer, b->swimmer->next_steer, sizeof in.steer);
-    memcpy(out.steer, in.steer, sizeof out.steer);
-    memcpy(in.state, r->memory, sizeof in.state);
-    memcpy(out.state, in.state, sizeof out.state);
-    find_inertia(r, in.inertia);
-    TOBI_TRY(r->control(r->control_user, &in, &out, err));
-    int hold = tobi_rigid_axes(out.hold, unknown);
-    if (hold < 0)
-        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program holds '%s', which is no axis; "
-                         "allowed are x, y, z, turn_x, turn_y, turn_z, shift and turn", b->name, unknown);
-    if (hold && r->joint.kind)
-        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program holds '%s'; nothing can be held "
-                         "of a body on a hinge or guide", b->name, out.hold);
-    int turns = (hold | r->locked) >> 3;
-    if (turns == 1 || turns == 2 || turns == 4)
-        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program holds '%s', the turn about one "
-                         "axis alone; allowed are none, two and three", b->name, out.hold);
-    double sum = 0;
-    for (int a = 0; a < 3; a++) sum += 0*out.force[a] + 0*out.torque[a];
-    for (int a = 0; a < 3; a++) sum += 0*out.steer[a];
-    for (int k = 0; k < TOBI_CONTROL_STATE; k++) sum += 0*out.state[k];
-    if (sum != 0)      /* 0 times a number is 0 */
-        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program answered a force, torque, "
-                         "steer or state that is not finite at t = %.9g s", b->name, t);
-    if (b->swimmer) memcpy(b->swimmer->next_steer, out.steer, sizeof out.steer);
-    memcpy(r->memory, out.state, sizeof out.state);
-    if (out.phase != in.phase) r->phase_start = t;
-    r->phase = out.phase;
-    *bits = hold;
-    vec3_add_scaled(force, force, 1, out.force);
-    vec3_add_scaled(torque, torque, 1, out.torque);
-    return TOBI_OK;
-}
-
 /* Of lines, and of springs and dampers of joints. */
 static void add_loads(const tobi_dynamics_state *d, int body, tobi_line_when when, tobi_line_load *load)
 {
@@ -151,7 +90,7 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
     double hold = r->hold;
     memcpy(force, r->force, sizeof force);
     memcpy(torque, r->torque, sizeof torque);
-    if (r->control) TOBI_TRY(run_control(b, t, dt, force, torque, &hold, err));
+    if (r->control) TOBI_TRY(tobi_control_run(d, b, t, dt, force, torque, &hold, err));
     vec3_add_scaled(force, force, 1, r->inertial);
     vec3_add_scaled(torque, torque, 1, r->inertial + 3);
     tobi_line_load now = { 0 }, mean = { 0 };

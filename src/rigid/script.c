@@ -359,7 +359,8 @@ tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_c
     TOBI_NEED(user, "the script");
     TOBI_NEED(in && out, "the input or the output");
     tobi_script *s = user;
-    enum { FROM = 33 + TOBI_CONTROL_STATE, INTO = 10 + TOBI_CONTROL_STATE };
+    enum { JOINTS = 33 + TOBI_CONTROL_STATE, FROM = JOINTS + 2*TOBI_CONTROL_JOINTS,
+           MOTORS = 10 + TOBI_CONTROL_STATE, INTO = MOTORS + TOBI_CONTROL_JOINTS };
     double from[FROM] = { in->time }, into[INTO] = { 0, 0, 0, 0, 0, 0, in->phase };
     memcpy(from + 1, in->position, 3*sizeof *from);
     memcpy(from + 4, in->orientation, 4*sizeof *from);
@@ -376,13 +377,22 @@ tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_c
     memcpy(from + 33, in->state, sizeof in->state);
     memcpy(into + 7, in->steer, 3*sizeof *into);
     memcpy(into + 10, in->state, sizeof in->state);
+    const int joints = in->joint_count < TOBI_CONTROL_JOINTS ? in->joint_count : TOBI_CONTROL_JOINTS;
+    for (int k = 0; k < joints; k++) {
+        from[JOINTS + 2*k] = in->joints[k].angle;
+        from[JOINTS + 2*k + 1] = in->joints[k].speed;
+        snprintf(s->channel->joint[k], sizeof s->channel->joint[k], "%s", in->joints[k].name);
+    }
+    for (int k = 0; k < TOBI_CONTROL_JOINTS; k++) into[MOTORS + k] = TOBI_NOT_GIVEN;
+    s->channel->count = joints;
     memcpy(s->channel->from, from, sizeof from);
     memcpy(s->channel->to, into, sizeof into);
     const char *why = ask(s, TOBI_REQUEST_CONTROL);
     if (why) return tobi_fail(err, TOBI_SCRIPT, "%s: %s (t = %.9g s)", s->label, why, in->time);
     memcpy(into, s->channel->to, sizeof into);
     for (int k = 0; k < INTO; k++) {
-        const char *what = k < 3 ? "force" : k < 6 ? "torque" : k < 7 ? "phase" : k < 10 ? "steer" : "state";
+        const char *what = k < 3 ? "force" : k < 6 ? "torque" : k < 7 ? "phase" : k < 10 ? "steer" :
+                           k < MOTORS ? "state" : "motor";
         if (!(fabs(into[k]) <= (k != 6 ? DBL_MAX : 1e9)))
             return tobi_fail(err, TOBI_SCRIPT, "%s: control returned a %s that is not finite (t = %.9g s)",
                              s->label, what, in->time);
@@ -393,6 +403,7 @@ tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_c
     out->phase = (int)into[6];
     memcpy(out->steer, into + 7, sizeof out->steer);
     memcpy(out->state, into + 10, sizeof out->state);
+    memcpy(out->motor, into + MOTORS, sizeof out->motor);
     out->hold = s->hold;
     return TOBI_OK;
 }

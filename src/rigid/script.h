@@ -18,7 +18,7 @@
 
      function control(t, body)          -- time (s) and what the body does, see below
          return { force = {x, y, z}, torque = {x, y, z}, phase = 2, hold = "z,turn",
-                  steer = {a, b, c}, state = {a, b, ...} }
+                  steer = {a, b, c}, state = {a, b, ...}, motor = { NAME = number } }
      end
 
    Every key of the answer may be left out, and no answer at all is no force. body has position (m),
@@ -29,7 +29,8 @@
    alone. The force acts on the centre of mass, in world axes. phase, a whole number, is 1 at the start and
    then what the script answered last. These three are the only memory a script may have, since a restart
    begins with them; globals cannot be assigned after loading, tables and locals outside control are not
-   watched. hold names the axes that stand still in this step, like `locked` of a body.
+   watched. hold names the axes that stand still in this step, like `locked` of a body. body.joints.NAME has
+   angle (degrees) and speed (degrees/s) of each hinge of the body, motor tells its motor what to do.
 
    A flow script defines
 

@@ -128,7 +128,7 @@ static const char DRIVER[] =
     "    end\n"
     "end\n"
     "local known = { force = true, torque = true, phase = true, hold = true,\n"
-    "    steer = true, state = true }\n"
+    "    steer = true, state = true, motor = true }\n"
     "local function take(value, name, into, first)\n"
     "    if value == nil then return end\n"
     "    if type(value) ~= 'table' or value[4] ~= nil then value = {} end\n"
@@ -151,12 +151,40 @@ static const char DRIVER[] =
     "        into[9 + k] = number\n"
     "    end\n"
     "end\n"
+    /* joints = { NAME = { angle, speed } }; a misspelt name is told. */
+    "local missing = { __index = function(t, k)\n"
+    "    local names = {}\n"
+    "    for name in next, t do names[#names + 1] = name end\n"
+    "    table.sort(names)\n"
+    "    error(\"body has no joint '\" .. text(k) .. \"'; it has \" ..\n"
+    "          (#names > 0 and table.concat(names, ', ') or 'none'), 2)\n"
+    "end }\n"
+    "local function list(names, from)\n"
+    "    local joints = {}\n"
+    "    for k = 1, #names do\n"
+    "        joints[names[k]] = { angle = from[47 + 2 * k], speed = from[48 + 2 * k] }\n"
+    "    end\n"
+    "    return setmetatable(joints, missing)\n"
+    "end\n"
+    "local function drive(motor, names, joints, into)\n"
+    "    if motor == nil then return end\n"
+    "    if type(motor) ~= 'table' then\n"
+    "        error('control must return a motor as { NAME = number }', 0)\n"
+    "    end\n"
+    "    for name, value in user.pairs(motor) do\n"
+    "        local known = joints[name]\n"
+    "        if type(value) ~= 'number' then\n"
+    "            error('control must return a motor as { NAME = number }', 0)\n"
+    "        end\n"
+    "        for k = 1, #names do if names[k] == name then into[25 + k] = value end end\n"
+    "    end\n"
+    "end\n"
     "local inputs = { __index = function(_, k)\n"
     "    error(\"body has no '\" .. text(k) .. \"'; it has position, orientation, velocity, \" ..\n"
     "          'angular_velocity, contact_force, contact_torque, mass, inertia, phase, phase_time, ' ..\n"
-    "          'step, steer and state', 2)\n"
+    "          'step, steer, state and joints', 2)\n"
     "end }\n"
-    "local function control(from, into)\n"
+    "local function control(from, into, names)\n"
     "    from, into = ffi.cast('const double *', from), ffi.cast('double *', into)\n"
     "    local function three(k) return { from[k], from[k + 1], from[k + 2] } end\n"
     "    local function several(first, n)\n"
@@ -164,12 +192,14 @@ static const char DRIVER[] =
     "        for k = 1, n do list[k] = from[first + k - 1] end\n"
     "        return list\n"
     "    end\n"
+    "    local joints = list(names, from)\n"
     "    local answer = h(from[0], setmetatable({ position = three(1),\n"
     "        orientation = { from[4], from[5], from[6], from[7] }, velocity = three(8),\n"
     "        angular_velocity = three(11), contact_force = three(14),\n"
     "        contact_torque = three(17), mass = from[20], phase = from[21],\n"
     "        phase_time = from[22], step = from[23], steer = three(24),\n"
-    "        inertia = several(27, 6), state = several(33, 16) }, inputs))\n"
+    "        inertia = several(27, 6), state = several(33, 16), joints = joints },\n"
+    "        inputs))\n"
     "    if answer == nil then return end\n"
     "    if type(answer) ~= 'table' then error('control must return a table or nothing', 0) end\n"
     "    local unknown\n"
@@ -179,12 +209,13 @@ static const char DRIVER[] =
     "    end\n"
     "    if unknown then\n"
     "        error(\"control returned the unknown key '\" .. unknown ..\n"
-    "              \"'; allowed are force, torque, phase, hold, steer, state\", 0)\n"
+    "              \"'; allowed are force, torque, phase, hold, steer, state, motor\", 0)\n"
     "    end\n"
     "    take(answer.force, 'force', into, 0)\n"
     "    take(answer.torque, 'torque', into, 3)\n"
     "    take(answer.steer, 'steer', into, 7)\n"
     "    keep(answer.state, into)\n"
+    "    drive(answer.motor, names, joints, into)\n"
     "    if answer.phase ~= nil then\n"
     "        if type(answer.phase) ~= 'number' or answer.phase % 1 ~= 0 or\n"
     "           math.abs(answer.phase) > 1e9 then\n"
@@ -411,7 +442,12 @@ static int call_control(process *s)
     lua_rawgeti(s->lua, LUA_REGISTRYINDEX, s->control);
     lua_pushlightuserdata(s->lua, c->from);
     lua_pushlightuserdata(s->lua, c->to);
-    int code = lua_pcall(s->lua, 2, 1, 0);
+    lua_newtable(s->lua);
+    for (int k = 0; k < c->count && k < TOBI_CONTROL_JOINTS; k++) {
+        lua_pushstring(s->lua, c->joint[k]);
+        lua_rawseti(s->lua, -2, k + 1);
+    }
+    int code = lua_pcall(s->lua, 3, 1, 0);
     const char *hold = code == 0 && lua_type(s->lua, -1) == LUA_TSTRING ? lua_tostring(s->lua, -1) : "";
     if (code == 0) snprintf(c->hold, sizeof c->hold, "%s", hold);
     return code;

@@ -33,6 +33,7 @@ typedef struct tobi_script_channel {
     double steer[3];                          /* for deform                                                */
     double pivot[3];                          /* m, set by loading                                         */
     int rigid;                                /* 1: the script has place, set by loading                   */
+    char joint[TOBI_CONTROL_JOINTS][64];      /* names of the `count` joints that control sees             */
     char hold[64], text[1024];
 } tobi_script_channel;
 

@@ -10,13 +10,13 @@ static const tobi_param rows[] = {
     { .key = "script", .type = TOBI_PARAM_TEXT, .offset = offsetof(tobi_control_def, script), .unit = "path",
       .required = true,
       .doc = "A Lua file with a function control(t, body) that returns { force = {x, y, z}, torque = "
-             "{x, y, z}, phase = 2, hold = \"z,turn\", steer = {a, b, c}, state = {a, b, ...} }, all of them "
-             "optional; body has position, orientation, velocity, angular_velocity, contact_force, "
-             "contact_torque, mass, inertia, phase, phase_time, step, steer and state. phase, a whole number "
-             "that begins with 1, steer, numbers for the deform of the same body, and state, up to 16 "
-             "numbers, are all that is kept from step to step and by a resumed run: globals cannot be "
-             "assigned in control, and what it keeps in tables or locals outside of itself is lost on "
-             "resume." },
+             "{x, y, z}, phase = 2, hold = \"z,turn\", steer = {a, b, c}, state = {a, b, ...}, motor = "
+             "{ NAME = value } }, all of them optional; body has position, orientation, velocity, "
+             "angular_velocity, contact_force, contact_torque, mass, inertia, phase, phase_time, step, "
+             "steer, state and joints. phase, a whole number that begins with 1, steer, numbers for the "
+             "deform of the same body, and state, up to 16 numbers, are all that is kept from step to step "
+             "and by a resumed run: globals cannot be assigned in control, and what it keeps in tables or "
+             "locals outside of itself is lost on resume." },
     { 0 }
 };
 static const tobi_param flow_rows[] = {

@@ -149,5 +149,6 @@ tobi_status tobi_world_put_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
         TOBI_TRY(put_body(&w->sim.bodies[k], k, f, err));
         TOBI_TRY(put_absorber(w, k, f, err));
     }
+    TOBI_TRY(tobi_motors_put(w, f, err));
     return w->dynamics ? put_contacts(w, f, err) : TOBI_OK;
 }

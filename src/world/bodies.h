@@ -1,5 +1,6 @@
 /* The bodies that move by forces, as the world sees them. */
 #pragma once
+#include "world/motors.h"
 #include "io/store.h"
 #include "world/world.h"
 
@@ -21,6 +22,7 @@ typedef struct tobi_loaded_bodies {
     tobi_loaded_body *body;      /* [body_count], owned */
     int count;
     double *contacts;            /* rows of TOBI_WARM, owned */
+    double (*motors)[TOBI_MOTOR_DOUBLES];    /* of motors.h, owned */
     int64_t contact_count;
 } tobi_loaded_bodies;
 /* To be freed in any case. */

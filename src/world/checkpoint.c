@@ -146,6 +146,7 @@ tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
     TOBI_TRY(tobi_store_open(path, &f, err));
     loaded l = { 0 };
     tobi_status status = read_all(w, f, path, &l, err);
+    if (status == TOBI_OK) tobi_motors_take(w, (const double (*)[TOBI_MOTOR_DOUBLES])l.bodies.motors);
     if (status == TOBI_OK) status = tobi_motors_tell(w, l.clock[0], 0, err);
     if (status == TOBI_OK) status = tobi_world_take_bodies(w, &l.bodies, err);
     if (status == TOBI_OK) take_over(w, &l);

@@ -187,6 +187,7 @@ tobi_status tobi_world_read_bodies(tobi_world *w, tobi_store *f, tobi_loaded_bod
         TOBI_TRY(read_absorber(w, k, f, &l->body[k], err));
         if (b->swimmer) TOBI_TRY(read_shape(b, k, f, &l->body[k], err));
     }
+    TOBI_TRY(tobi_motors_read(w, f, &l->motors, err));
     return w->dynamics ? read_contacts(f, l, err) : TOBI_OK;
 }
 
@@ -251,5 +252,6 @@ void tobi_loaded_bodies_free(tobi_loaded_bodies *l)
     }
     free(l->body);
     free(l->contacts);
+    free(l->motors);
     *l = (tobi_loaded_bodies){ 0 };
 }

@@ -8,6 +8,7 @@
 #include "rigid/keyframes.h"
 #include "tobiuo/motion.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -199,6 +200,7 @@ static void make_own(const tobi_world *w, int body, tobi_constraint *j)
     const tobi_rigid *r = &w->sim.bodies[body].rigid;
     double turn[3][3];
     *j = (tobi_constraint){ .kind = TOBI_BETWEEN_MOTOR, .body = { body, -1 } };
+    snprintf(j->name, sizeof j->name, "%s", w->sim.bodies[body].name);
     tobi_quaternion_matrix(r->orientation, turn);
     memcpy(j->axis[1], r->joint.axis, sizeof j->axis[1]);
     for (int a = 0; a < 3; a++)
@@ -231,10 +233,57 @@ tobi_status tobi_motors_tell(tobi_world *w, double t, double dt, tobi_error *err
         tobi_motor *motor = &w->sim.constraints.at[m->joint].motor;
         const double unit = m->kind == TOBI_MOTOR_TORQUE ? 1 : degree;
         double before, value;
+        if (motor->is_set) {                     /* by a control program */
+            motor->before = motor->last;
+            motor->value = dt > 0 ? motor->set : motor->last;
+            continue;
+        }
         TOBI_TRY(find_value(m, t, &before, err));
         TOBI_TRY(find_value(m, t + dt, &value, err));
         motor->before = unit*before;
         motor->value = unit*value;
     }
     return TOBI_OK;
+}
+
+/* --- checkpoints ---------------------------------------------------------------------------------- */
+
+tobi_status tobi_motors_put(const tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    double (*rows)[TOBI_MOTOR_DOUBLES] = malloc((size_t)(w->motor_count + 1)*sizeof *rows);
+    int any = 0;
+    if (!rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for motors");
+    for (int k = 0; k < w->motor_count; k++) {
+        const tobi_motor *m = &w->sim.constraints.at[w->motors[k].joint].motor;
+        memcpy(rows[k], (double[]){ m->is_set, m->set, m->last }, sizeof *rows);
+        any |= m->is_set;
+    }
+    const tobi_status status = any ? tobi_store_put(f, "motors", TOBI_F64, w->motor_count, TOBI_MOTOR_DOUBLES,
+                                                    rows, err) : TOBI_OK;
+    free(rows);
+    return status;
+}
+
+tobi_status tobi_motors_read(const tobi_world *w, tobi_store *f, double (**rows)[TOBI_MOTOR_DOUBLES],
+                             tobi_error *err)
+{
+    *rows = calloc((size_t)w->motor_count + 1, sizeof **rows);
+    if (!*rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for motors");
+    if (w->motor_count == 0 || !tobi_store_has(f, "motors")) return TOBI_OK;
+    TOBI_TRY(tobi_store_get(f, "motors", TOBI_F64, w->motor_count, TOBI_MOTOR_DOUBLES, *rows, err));
+    for (int k = 0; k < w->motor_count; k++)
+        for (int n = 0; n < TOBI_MOTOR_DOUBLES; n++)
+            if (!isfinite((*rows)[k][n]))
+                return tobi_fail(err, TOBI_DAMAGED, "the checkpoint's motors are told what is no number");
+    return TOBI_OK;
+}
+
+void tobi_motors_take(tobi_world *w, const double (*rows)[TOBI_MOTOR_DOUBLES])
+{
+    for (int k = 0; k < w->motor_count; k++) {
+        tobi_motor *m = &w->sim.constraints.at[w->motors[k].joint].motor;
+        m->is_set = rows[k][0] != 0;
+        m->set = rows[k][1];
+        m->last = rows[k][2];
+    }
 }

@@ -1,5 +1,6 @@
 /* What the motors of hinges are told in the course of time. */
 #pragma once
+#include "io/store.h"
 #include "world/world.h"
 
 /* Takes a motor of joint `joint` (of sim.constraints), or with joint -1 of the hinge of a body; one that is
@@ -16,3 +17,10 @@ const tobi_constraint *tobi_motors_of_body(const tobi_world *w, int body);
 /* Joints between bodies: constraints without motors of bodies' own hinges. */
 int tobi_motors_joint_count(const tobi_world *w);
 void tobi_motors_free(tobi_world *w);
+
+/* What control programs have told motors, for checkpoints. *rows: of all motors, owned by the caller. */
+enum { TOBI_MOTOR_DOUBLES = 3 };
+tobi_status tobi_motors_put(const tobi_world *w, tobi_store *f, tobi_error *err);
+tobi_status tobi_motors_read(const tobi_world *w, tobi_store *f, double (**rows)[TOBI_MOTOR_DOUBLES],
+                             tobi_error *err);
+void tobi_motors_take(tobi_world *w, const double (*rows)[TOBI_MOTOR_DOUBLES]);

@@ -1,6 +1,8 @@
 /* Control programs in Lua: what they read and answer, and their mistakes. */
 #include "rigid_rig.h"
 #include "rigid/script.h"
+#include "run_to.h"
+#include "world/world.h"
 
 static void write_file(const char *path, const char *text)
 {
@@ -21,6 +23,9 @@ static tobi_status ask(const char *text, tobi_control_output *out, tobi_error *e
                               .state = { 0.5, [15] = 0.25 } };
     write_file("ask.lua", text);
     TOBI_TRY(tobi_script_load_within("ask.lua", NULL, TOBI_CONTROL_SCRIPT, 0.2, &script, err));
+    in.joints[0] = (tobi_control_joint){ "elbow", 30, -4 };
+    in.joints[1] = (tobi_control_joint){ "flap", 31, 5 };
+    in.joint_count = 2;
     *out = (tobi_control_output){ .phase = in.phase };
     memcpy(out->state, in.state, sizeof out->state);
     tobi_status status = tobi_script_control(script, &in, out, err);
@@ -52,6 +57,11 @@ static void test_control_script(void **state)
     assert_int_equal(ask("function control() end", &out, &err), TOBI_OK);
     assert_true(out.force[0] == 0 && out.phase == 17 && !out.hold[0]);
     assert_true(out.state[0] == 0.5 && out.state[15] == 0.25);
+    assert_true(out.motor[0] == TOBI_NOT_GIVEN && out.motor[1] == TOBI_NOT_GIVEN);
+    assert_int_equal(ask("function control(t, b)\n"
+                         "    return { motor = { flap = b.joints.elbow.angle + b.joints.flap.speed } }\n"
+                         "end\n", &out, &err), TOBI_OK);
+    assert_true(out.motor[0] == TOBI_NOT_GIVEN && out.motor[1] == 35);
     static const struct { const char *text, *words; } bad[] = {
         { "function control(t, b) return t.x end", "ask.lua:1: attempt to index" },
         { "function place() return 0, 0, 0 end", "define function control(t, body)" },
@@ -67,6 +77,11 @@ static void test_control_script(void **state)
           "a state of at most 16 numbers" },
         { "function control() return { state = 3 } end", "a state of at most 16 numbers" },
         { "function control() return { state = { 1/0 } } end", "state that is not finite" },
+        { "function control() return { motor = 3 } end", "a motor as { NAME = number }" },
+        { "function control() return { motor = { flap = 'x' } } end", "a motor as { NAME = number }" },
+        { "function control() return { motor = { flap = 1/0 } } end", "motor that is not finite" },
+        { "function control() return { motor = { knee = 3 } } end",
+          "body has no joint 'knee'; it has elbow, flap" },
         { "function control() return { froce = {0, 0, 0} } end", "unknown key 'froce'" },
         { "function control() return { force = {0/0, 0, 0} } end", "force that is not finite (t = 2 s)" },
         { "function control() return { torque = {0, 1/0, 0} } end", "torque that is not finite" },
@@ -90,8 +105,98 @@ static void test_control_script(void **state)
     assert_non_null(strstr(err.text, "control script params: must be a JSON object"));
 }
 
+static int answer;         /* what the program below tells */
+
+/* From 0.2 s on the flap turns; the bar is told nothing before that. */
+static tobi_status drive(void *user, const tobi_control_input *in, tobi_control_output *out, tobi_error *err)
+{
+    (void)user; (void)err;
+    assert_int_equal(in->joint_count, 2);
+    assert_string_equal(in->joints[0].name, "knee");
+    assert_string_equal(in->joints[1].name, "flap");
+    if (in->time > 0.2) out->motor[1] = 90;
+    if (in->time > 0.2) out->motor[0] = 10*in->time;
+    if (answer == 1) out->motor[1] = 1e9;
+    return TOBI_OK;
+}
+
+/* A flap with a motor, and a bar on it with a motor, or without. */
+static tobi_world *build(int motor)
+{
+    tobi_world_def def = tobi_default_world_def();
+    tobi_joint_def knee = tobi_default_joint_def();
+    tobi_world *w;
+    tobi_error err = { 0 };
+    def.method = "mlsmpm";
+    for (int a = 0; a < 3; a++) def.domain_max[a] = 4, def.gravity[a] = 0;
+    def.spacing = 0.1;
+    def.time_step = 0.005;
+    assert_int_equal(tobi_world_create(&def, NULL, &w, &err), TOBI_OK);
+    for (int k = 0; k < 2; k++) {
+        tobi_body_def b = tobi_default_body_def();
+        b.name = k ? "bar" : "flap";
+        b.dynamics = k ? TOBI_FREE : TOBI_CONTROLLED;
+        b.control = k ? NULL : drive;
+        b.hinge_axis[1] = !k;
+        for (int a = 0; a < 3; a++) b.hinge_point[a] = b.box_min[a] = 2, b.box_max[a] = 2.2;
+        b.box_min[2] += 0.2*k, b.box_max[2] += 0.2*k;
+        if (!k) b.hinge_motor.speed = 0, b.hinge_motor.torque_max = 20;
+        assert_int_equal(tobi_world_add_body(w, &b, &err), TOBI_OK);
+    }
+    knee.name = "knee", knee.body = "bar", knee.to_body = "flap", knee.axis[1] = 1;
+    for (int a = 0; a < 3; a++) knee.point[a] = 2.2;
+    if (motor) knee.motor.angle = 0, knee.motor.torque_max = 20;
+    assert_int_equal(tobi_world_add_joint(w, &knee, &err), TOBI_OK);
+    return w;
+}
+
+/* Speeds and angles are those that the program tells, and a restart knows them. */
+static void test_motors(void **state)
+{
+    (void)state;
+    tobi_error err = { 0 };
+    tobi_joint_info knee, flap;
+    tobi_world *a = build(1), *b = build(1);
+    answer = 0;
+    run_to(a, 0.1);
+    tobi_world_joint(a, 1, &flap);
+    assert_true(flap.angle == 0);
+    run_to(a, 0.5);
+    assert_int_equal(tobi_world_save(a, "motors.h5", &err), TOBI_OK);
+    const uint64_t whole = run_to(a, 1);
+    tobi_world_joint(a, 0, &knee);
+    tobi_world_joint(a, 1, &flap);
+    print_message("flap at %g degrees, knee at %g\n", flap.angle, knee.angle);
+    assert_true(flap.angle > 50 && flap.angle < 0.8*90 + 1);
+    assert_true(fabs(knee.angle - 10*0.995) < 1e-6);
+    assert_int_equal(tobi_world_load(b, "motors.h5", &err), TOBI_OK);
+    assert_true(run_to(b, 1) == whole);
+    a->sim.constraints.at[0].motor.set = NAN;
+    assert_int_equal(tobi_world_save(a, "motors.h5", &err), TOBI_OK);
+    assert_int_equal(tobi_world_load(b, "motors.h5", &err), TOBI_DAMAGED);
+    assert_non_null(strstr(err.text, "the checkpoint's motors are told what is no number"));
+    tobi_world_destroy(a);
+    tobi_world_destroy(b);
+    remove("motors.h5");
+}
+
+static void test_wrong_motors(void **state)
+{
+    (void)state;
+    for (answer = 0; answer < 2; answer++) {
+        tobi_error err = { 0 };
+        tobi_world *w = build(answer);
+        assert_int_equal(tobi_world_advance(w, 0.5, NULL, &err), TOBI_SCRIPT);
+        const char *words = answer ? "body 'flap': its control program tells the motor of 'flap' 1e+09; al"
+                                   : "tells the motor of 'knee', which has none; a hinge has one by the key";
+        if (!strstr(err.text, words)) fail_msg("%s", err.text);
+        tobi_world_destroy(w);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_control_script) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_control_script), cmocka_unit_test(test_motors),
+                                        cmocka_unit_test(test_wrong_motors) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

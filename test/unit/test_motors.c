@@ -133,9 +133,10 @@ static void an_angle_far_away_is_reached_without_overshoot(void **state)
 static void a_motor_keeps_angular_momentum(void **state)
 {
     (void)state;
-    const tobi_motor motors[] = { { TOBI_MOTOR_SPEED, 0.02, 1.5, 1.5, 0, 0, 0 },
-                                  { TOBI_MOTOR_SPEED, INFINITY, 1.5, 1.5, 0, 0, 0 },
-                                  { TOBI_MOTOR_TORQUE, INFINITY, 0.02, 0.02, 0, 0, 0 } };
+    const tobi_motor motors[] = {
+        { .kind = TOBI_MOTOR_SPEED, .most = 0.02, .before = 1.5, .value = 1.5 },
+        { .kind = TOBI_MOTOR_SPEED, .most = INFINITY, .before = 1.5, .value = 1.5 },
+        { .kind = TOBI_MOTOR_TORQUE, .most = INFINITY, .before = 0.02, .value = 0.02 } };
     for (int k = 0; k < 3; k++) {
         rig g;
         rig_open(&g, 5, weightless);
