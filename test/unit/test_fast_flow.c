@@ -40,11 +40,11 @@ static void test_narrow(void **state)
                  "{ \"name\": \"b\", \"box\": { \"min\": [0.4, 0.12], \"max\": [0.5, 0.2] } } ],"
                  THROUGH, CHANNEL, limits[k], ", \"pressure\": 4000");
         must(start_scene(text, &w, &err), &err);
-        for (double t = 0.05; t < 0.31; t += 0.05) {
+        for (double t = 0.05; t < (SANITIZED ? 0.11 : 0.31); t += 0.05) {
             must(tobi_world_advance(w, t, &info, &err), &err);
             assert_int_equal(info.capped, 0);
         }
-        assert_true(info.speed_max > 2);          /* 2.5 by continuity, and it is still narrower behind */
+        assert_true(SANITIZED || info.speed_max > 2);     /* 2.5 by continuity; it is still narrower behind */
         tobi_world_destroy(w);
     }
 }
@@ -84,9 +84,10 @@ static void test_piston(void **state)
     (void)state;
     for (int k = 0; k < 6; k++) {
         tobi_step_info info;
-        press(methods[k/2], ramps[k%2], nozzle, 0.3, &info);
+        press(methods[k/2], ramps[k%2], nozzle, SANITIZED ? 0.06 : 0.3, &info);
         print_message("%s%s: %g m/s, density off by %g\n", methods[k/2], ramps[k%2], info.speed_max,
                       info.density_error_mean);
+        if (SANITIZED) continue;
         assert_true(info.speed_max > 2.5);
         if (k/2 != 1) assert_true(info.density_error_mean < 0.01);
     }
@@ -163,7 +164,7 @@ static void test_level_zero(void **state)
     must(start_scene(text, &w, &err), &err);
     must(tobi_world_advance(w, 0.1, &info, &err), &err);       /* what lies beyond the buffer is gone */
     const double held = info.mass_held;
-    must(tobi_world_advance(w, 1, &info, &err), &err);
+    must(tobi_world_advance(w, SANITIZED ? 0.2 : 1, &info, &err), &err);
     assert_true(fabs(info.mass_held - held) < 0.03*held);
     tobi_world_destroy(w);
 }

@@ -43,6 +43,7 @@ static void expect_scene(const char *name, const char *change, double spacing, d
     tobi_scene *scene;
     tobi_world *world;
     tobi_error err = { 0 };
+    if (SANITIZED) end /= 4;
     snprintf(path, sizeof path, "%s/scenes/%s/scene.json", TOBI_SOURCE_DIR, name);
     snprintf(width, sizeof width, "spacing=%g", spacing);
     snprintf(until, sizeof until, "end_time=%g", end);

@@ -127,7 +127,7 @@ static double run_out(const char *method, int still_water, double speed, int sof
     memcpy(fill.box_min, (double[3]){ 0.06, 0.06, 0 }, sizeof fill.box_min);
     memcpy(fill.box_max, (double[3]){ 0.12, 0.12, 0 }, sizeof fill.box_max);
     if (soft) OK(tobi_world_add_solid(world, &solid, &fill, 1, &err));
-    OK(tobi_world_advance(world, 0.02 + 0.2/speed, &info, &err));
+    OK(tobi_world_advance(world, SANITIZED ? 0.04 : 0.02 + 0.2/speed, &info, &err));
     tobi_world_destroy(world);
     return info.kinetic_energy;
 }
@@ -142,7 +142,7 @@ static void water_runs_out_under_a_gate(void **state)
         const double part = run_out(method, 1, 1.5, k/2)/run_out(method, 0, 1.5, k/2);
         printf("%s%s: %.2f of the energy without still water\n", method, k/2 ? ", with a soft block" : "",
                part);
-        assert_true(part > 0.7 && part < 1.2);
+        assert_true(SANITIZED || (part > 0.7 && part < 1.2));
     }
 }
 
@@ -158,7 +158,7 @@ static void water_in_gaps_presses(void **state)
     ball.mesh = TOBI_SOURCE_DIR "/test/meshes/sphere.obj";
     for (int a = 0; a < 3; a++) ball.scale[a] = 0.08, ball.translation[a] = a < 2 ? 0.1 : 0.04;
     OK(tobi_world_add_body(world, &ball, &err));
-    OK(tobi_world_advance(world, 0.2, NULL, &err));
+    OK(tobi_world_advance(world, SANITIZED ? 0.01 : 0.2, NULL, &err));
     for (int k = 1; k <= 20; k++) {
         OK(tobi_world_step(world, 0, NULL, &err));
         OK(tobi_world_body(world, 0, &info));
@@ -166,7 +166,7 @@ static void water_in_gaps_presses(void **state)
     }
     const double part = force/(1000*G*volume*0.98);      /* the sphere's facets hold 2 % less */
     printf("buoyancy on the floor: %.3f of the exact one\n", part);
-    assert_true(part > 0.9 && part < 1.05);
+    assert_true(SANITIZED || (part > 0.9 && part < 1.05));
     tobi_world_destroy(world);
 }
 
@@ -459,11 +459,11 @@ static void sand_falls_under_water(void **state)
     double top = 0;
     tobi_world *world = make_sand(0.012, 0);
     (void)state;
-    OK(tobi_world_advance(world, 1, NULL, &err));
+    OK(tobi_world_advance(world, SANITIZED ? 0.05 : 1, NULL, &err));
     const tobi_particles *p = &world->system[1].particles;
     for (int64_t i = 0; i < p->count; i++) top = fmax(top, p->position[i].y);
     print_message("sand: %.3f m high\n", top);
-    assert_true(top < 0.19);
+    assert_true(SANITIZED || top < 0.19);
     tobi_world_destroy(world);
 }
 
@@ -479,7 +479,7 @@ static void water_does_no_work_on_what_rests(void **state)
                    "{ \"min\": [0, 0], \"max\": [0.6, 0.4] } } ] } ], \"solids\": [ { \"name\": \"jelly\","
                    "\"density\": 1100, \"youngs_modulus\": 1e5, \"fill\": [ { \"box\":"
                    "{ \"min\": [0.2, 0], \"max\": [0.4, 0.2] } } ] } ] }", &world, &err));
-    OK(tobi_world_advance(world, 0.5, &info, &err));
+    OK(tobi_world_advance(world, SANITIZED ? 0.05 : 0.5, &info, &err));
     print_message("work %.3g J, lost %.3g J\n", info.work_bodies, info.energy_lost);
     assert_true(fabs(info.work_bodies) < 0.5 && fabs(info.energy_lost) < 0.5);
     tobi_world_destroy(world);
