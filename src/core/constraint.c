@@ -549,9 +549,21 @@ tobi_status tobi_constraints_close(tobi_constraints *c, tobi_body *bodies, doubl
     return TOBI_OK;
 }
 
+/* The velocities that a liquid predicted have what motors at their bound give. */
+static void begin_motors(tobi_constraints *c, double dt)
+{
+    tobi_constraint_row *row = c->row;
+    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++) {
+        const tobi_constraint_row *motor = motor_of(c, &c->at[k], row);
+        if (motor && motor->motor > 0)
+            c->impulse[motor - c->row] = -dt*vec3_dot(motor->axis, c->at[k].motor.guess);
+    }
+}
+
 void tobi_constraints_drive(tobi_constraints *c, tobi_body *bodies, double dt)
 {
     forget_impulses(c);
+    begin_motors(c, dt);
     tobi_constraints_obey(c, bodies);
     close_gaps(c, bodies, dt, 1);
     tobi_constraints_count(c);

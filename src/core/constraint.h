@@ -19,6 +19,8 @@ typedef struct tobi_motor {
     double before, value;                /* rad/s, rad, N m: asked for when the step begins and ends     */
     double rate, goal;                   /* rad/s, rad: what it tries in the step                       */
     double impulse;                      /* N m s about the axis on the body, in this step              */
+    double guess[3];                     /* N m on the body, where a liquid's step begins: of a torque, or
+                                            of a motor at its bound                                     */
     int is_set;                          /* 1: a control program tells it: `set` from the next step on   */
     double set, last;                    /* that, and `value` of the last step that was made             */
 } tobi_motor;
@@ -106,6 +108,8 @@ void tobi_constraints_add_springs(const tobi_constraints *c, int body, double no
 void tobi_motors_begin(tobi_constraints *c, tobi_body *bodies, double dt);
 /* What a motor tries in it, with the mobility of its row. */
 void tobi_motor_aim(tobi_constraint *j, const tobi_body *bodies, double dt, double mobility);
+/* Adds to the torque on a body what motors at their bound, and those by torque, give in this step. */
+void tobi_motors_add_guess(const tobi_constraints *c, int body, double torque[3]);
 /* How far the next pose is from that, rad. */
 double tobi_motor_gap(const tobi_constraint *j, const tobi_body *bodies);
 /* Whether the hinge does what the motor was told when the step began. */

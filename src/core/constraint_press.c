@@ -23,6 +23,9 @@ static void take_known(tobi_constraints *c, const tobi_body *bodies, int touched
             impulse[a] = r->impulse[a] + (pulled ? dt*r->mass*r->pull[a] : 0);
             impulse[3 + a] = r->twist[a] + (pulled ? dt*r->pull_torque[a] : 0);
         }
+        double torque[3] = { 0 };
+        if (!driven) tobi_motors_add_guess(c, c->body[k], torque);
+        vec3_add_scaled(impulse + 3, impulse + 3, dt, torque);
         for (int i = 0; i < 6; i++)
             for (int j = 0; j < 6; j++) c->speed[k][i] += w[i][j]*impulse[j];
     }

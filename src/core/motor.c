@@ -1,10 +1,11 @@
 /* Motors of hinges. One by speed or angle is a row about the axis, like a stop: its impulse in a step has a
    bound of either sign, and beyond it the row is none. So it drives as strongly as it must, the pressure of a
    liquid knows it, and nothing is to be remembered: whether it was obeyed, speed or angle show
-   (docs/decisions/0134-motors.md). Drawback: at its bound a liquid's pressure knows it one step later. */
+   (docs/decisions/0134-motors.md). Drawback: a liquid's pressure knows late that it meets it. */
 #include "core/constraint.h"
 #include "geom/vec3.h"
 #include <math.h>
+#include <string.h>
 
 #define OBEYED 1e-7              /* rad, rad/s, or a share of the speed: it does what it is told          */
 #define ROUNDING 1e-12           /* of the bound                                                         */
@@ -55,12 +56,29 @@ static double find_rate(const tobi_constraint *j, double angle, double dt, doubl
 void tobi_motor_aim(tobi_constraint *j, const tobi_body *bodies, double dt, double mobility)
 {
     tobi_motor *m = &j->motor;
-    double lower, upper;
-    if (m->kind == TOBI_MOTOR_TORQUE) return;
+    double lower, upper, axis[3], turn[3][3];
+    tobi_quaternion_matrix(bodies[j->body[0]].rigid.orientation, turn);
+    for (int a = 0; a < 3; a++) axis[a] = vec3_dot(turn[a], j->axis[0]);
+    memset(m->guess, 0, sizeof m->guess);
+    if (m->kind == TOBI_MOTOR_TORQUE) {
+        vec3_add_scaled(m->guess, m->guess, 0.5*(m->before + m->value), axis);
+        return;
+    }
     const double angle = tobi_constraint_angle(j, bodies, 0);
     find_stops(j, bodies, &lower, &upper);
     m->goal = fmin(fmax(angle + dt*find_rate(j, angle, dt, mobility), lower), upper);
     m->rate = (m->goal - angle)/dt;
+    if (isinf(m->most) || tobi_motor_follows(j, bodies)) return;
+    vec3_add_scaled(m->guess, m->guess, copysign(m->most, m->rate - j->rate_before), axis);
+}
+
+void tobi_motors_add_guess(const tobi_constraints *c, int body, double torque[3])
+{
+    for (int k = 0; k < c->count; k++) {
+        const tobi_constraint *j = &c->at[k];
+        if (!j->motor.kind || (j->body[0] != body && j->body[1] != body)) continue;
+        vec3_add_scaled(torque, torque, j->body[0] == body ? 1 : -1, j->motor.guess);
+    }
 }
 
 double tobi_motor_gap(const tobi_constraint *j, const tobi_body *bodies)

@@ -42,10 +42,12 @@ static void predict_joint(const tobi_system *s, tobi_rigid *r, const double f[6]
 
 /* Velocities at the end of the step, by force and torque f of the particles: (R.5) without control, and with
    what contact has held for two steps; the rest of contact the next step knows from its first velocities. */
-static void predict(const tobi_system *s, tobi_body *b, const double f[6])
+static void predict(const tobi_system *s, tobi_body *b, const double known[6])
 {
     tobi_rigid *r = &b->rigid;
-    double shift[3], turn[3][3], momentum[3], keep = tobi_rigid_keep(r, s->dt);
+    double shift[3], turn[3][3], momentum[3], f[6], keep = tobi_rigid_keep(r, s->dt);
+    memcpy(f, known, sizeof f);
+    tobi_motors_add_guess(&s->sim->constraints, (int)(b - s->sim->bodies), f + 3);
     if (r->joint.kind) {
         predict_joint(s, r, f);
         return;
