@@ -49,10 +49,11 @@ for spacing in case.pick((0.16/22, 0.16/27), (0.004, 0.0032)):
     value, table = force(out, "wing", "x", 0.1)
     wing.append(value)
     curves.append((f"d = {1000*spacing:.3g} mm", table["time"][1:], table["mean_pressure_force_x"][1:], False))
-    cd = -value/(0.5*1000*0.4**2*0.06*0.04)
+    # A plate acts 0.8 spacings too wide at each edge (decision 35). Of that area a steady one has 1.2; started at once, it
+    # has twice that while its first vortex ring grows.
+    cd = -value/(0.5*1000*0.4**2*(0.06 + 1.6*spacing)*(0.04 + 1.6*spacing))
     case.state(f"wing at {1000*spacing:.3g} mm: force, N", value)
-    # A steady plate has 1.2; started at once, it has twice that while its first vortex ring grows.
-    case.hold(f"wing at {1000*spacing:.3g} mm: a drag, coefficient {cd:.2f} between 0.5 and 3", 0.5 < cd < 3)
+    case.hold(f"wing at {1000*spacing:.3g} mm: a drag, coefficient {cd:.2f} between 1.2 and 2.5", 1.2 < cd < 2.5)
 change = wing[1]/wing[0] - 1
 case.figure("wing: change of the mean force with the spacing", change, "within 0.10", abs(change) <= 0.10)
 # A plate 4 to 6 spacings high sheds single vortices of one particle's size: 25 % at smoke size.
