@@ -85,8 +85,10 @@ double tobi_smoothing_f(int shape, int dimension, double h, double r)
 }
 
 /* Sums over lattice neighbours: kernel, that of those with x > 0, second moment xx, gradient of those with
-   x > 0, V F, twice V F where i + j + k is odd. */
-typedef struct lattice_sums { double w, behind, moment, slope_half, rate, shortest; } lattice_sums;
+   x > 0, V F, twice V F where i + j + k is odd; second moments xx, yy of those with x > 0. */
+typedef struct lattice_sums {
+    double w, behind, moment, slope_half, rate, shortest, along, across;
+} lattice_sums;
 
 static lattice_sums sum_lattice(int shape, int dimension, double d, double h)
 {
@@ -105,7 +107,10 @@ static lattice_sums sum_lattice(int shape, int dimension, double d, double h)
                 s.rate += f;
                 s.shortest += (i + j + k)%2 ? 2*f : 0;
                 s.moment += f*x*x;
-                if (i > 0) s.slope_half += f*x;
+                if (i <= 0) continue;
+                s.slope_half += f*x;
+                s.along += f*x*x;
+                s.across += f*y*y;
             }
     return s;
 }
@@ -163,6 +168,7 @@ void tobi_smoothing_init(tobi_smoothing_constants *c, int shape, int dimension, 
     c->slope_correction = 1/s.moment;
     c->rate = s.rate*c->slope_correction;
     c->shortest = s.shortest*c->slope_correction;
+    c->moment_lattice = (s.along + (dimension - 1)*s.across)/(s.along - s.across);
     double n = norm(shape, dimension, h)*c->volume;
     c->weight = n*c->weight_correction;
     c->slope = n*steepness(shape, h)*c->slope_correction;

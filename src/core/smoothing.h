@@ -14,6 +14,8 @@ typedef struct tobi_smoothing_constants {
     double shortest;       /* the same for the wave of two spacings along all axes: of V F (1 - wave)  */
     double weight_correction, slope_correction; /* against the integral norm */
     double wall_share, wall_lattice; /* at s = d/2: lambda, and what a lattice lacks there */
+    double moment_lattice; /* there: what is lacking of the sum of V F x2, over what is lacking of it
+                              along the wall's normal and not along the wall */
     double plane_scale;    /* sigma over the plain integral; also scales W at body points          */
     tobi_wall_table plane;
 } tobi_smoothing_constants;

@@ -68,6 +68,10 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
       "J of viscosity.md, eq. (2): xx, yy, zz, xy") \
     X(tobi_float4, TOBI_F32, 4, viscous_lack, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1", \
       "J: yz, zx; z: r of eq. (3b); w: 1/sum of V F x^2") \
+    X(tobi_float4, TOBI_F32, 4, viscous_spread, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1/s", \
+      "E of viscosity.md, eq. (2b): xx, yy, zz; w: y of the operand, m/s") \
+    X(tobi_float4, TOBI_F32, 4, viscous_slant, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1/s", \
+      "E: xy, yz, zx; w: z of the operand, m/s") \
     X(tobi_float4, TOBI_F32, 4, apparent,     TOBI_SCRATCH, SPH_NEED_APPARENT, "Pa s", \
       "x: viscosity at the shear rate y, 1/s, eq. (6) of viscosity.md") \
     X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "at a free surface 1; sparse: 2") \

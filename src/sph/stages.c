@@ -60,7 +60,8 @@ static void bind_stage(sph_view *v, const sph_fields *f)
     v->moment = f->moment; v->roughness = f->roughness; v->target_divergence = f->target_divergence;
     v->viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
                                     f->viscous_direction, f->viscous_product, f->viscous_inverse,
-                                    f->viscous_turning, f->viscous_lack, NULL, 0, f->apparent};
+                                    f->viscous_turning, f->viscous_lack, f->viscous_spread, f->viscous_slant,
+                                    NULL, 0, f->apparent};
 }
 
 void sph_stage(tobi_system *s, sph_view *v, int stage)
@@ -98,6 +99,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     v->h = (float)c->h; v->inverse_h = (float)(1/c->h); v->shape = c->shape;
     v->weight = (float)c->weight; v->slope = (float)c->slope;
     v->wall_share = (float)c->wall_share; v->wall_lattice = (float)c->wall_lattice;
+    v->moment_lattice = (float)c->moment_lattice;
     v->spacing = (float)c->spacing; v->volume = (float)c->volume; v->inverse_rate = (float)(1/c->rate);
     v->dimension = c->dimension;
     v->open_limit = (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;

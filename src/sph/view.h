@@ -17,7 +17,8 @@ enum { SPH_SPARSE = 2 };
 /* Of implicit viscosity, viscosity.k.h; NULL without it. */
 typedef struct sph_viscous_fields {
     tobi_float4 *TOBI_RESTRICT x, *TOBI_RESTRICT expected, *TOBI_RESTRICT residual, *TOBI_RESTRICT direction,
-                *TOBI_RESTRICT product, *TOBI_RESTRICT inverse, *TOBI_RESTRICT turning, *TOBI_RESTRICT lack;
+                *TOBI_RESTRICT product, *TOBI_RESTRICT inverse, *TOBI_RESTRICT turning, *TOBI_RESTRICT lack,
+                *TOBI_RESTRICT spread, *TOBI_RESTRICT slant;
     const tobi_float4 *operand;      /* x or direction: what the sums are over     */
     float moving;                    /* 1: walls move as they do, 0: they rest     */
     tobi_float4 *TOBI_RESTRICT apparent;     /* x: Pa s, y: 1/s; NULL: all are Newtonian */
@@ -59,6 +60,7 @@ typedef struct sph_view {
     float h, inverse_h, weight, slope;        /* see core/smoothing.h */
     int   shape;                              /* TOBI_SHAPE_*                                */
     float wall_share, wall_lattice;           /* eq. (5b) */
+    float moment_lattice;                     /* b of viscosity.md, eq. (2c) */
     float spacing, volume;
     float inverse_rate;                       /* m2: 1/sum of V F on the lattice             */
     int   dimension;

@@ -7,6 +7,9 @@
 
 /* beta of eq. (2b): a thread that is drawn out has 97 % of its resistance before pressure acts. */
 #define SPH_VISCOUS_BULK 8.0f
+/* delta of eq. (2b), least moment of eq. (2c): bounds where few neighbours are left. */
+#define SPH_VISCOUS_LEAST 0.3f
+#define SPH_VISCOUS_SPARSE 0.4f
 
 /* Pa s, of one particle. */
 TOBI_FN float sph_viscosity_of(const sph_view *v, int64_t i)
@@ -48,24 +51,26 @@ TOBI_FN float sph_viscous_reach(const sph_view *v, int plane, int64_t i)
     return s > least ? s : least;
 }
 
-/* turning = J of the pairs; lack.w = 1/sum of V F x^2. Meanwhile direction (xx, yy, zz) and product (xy, yz,
+/* turning = J of the pairs; lack.w = sum of V F x^2. Meanwhile direction (xx, yy, zz) and product (xy, yz,
    zx) hold N, the sum of sigma s n n over plane walls; bodies add theirs. */
-typedef struct sph_viscous_shape_acc { lane mu; sph_moments m; } sph_viscous_shape_acc;
+typedef struct sph_viscous_shape_acc { lane mu, square; sph_moments m; } sph_viscous_shape_acc;
 TOBI_FN void sph_viscous_shape_start(const sph_view *v, int64_t i, sph_viscous_shape_acc *a)
 {
     a->mu = sph_viscous_own(v, i);
+    a->square = lane_set(0);
     sph_moments_clear(&a->m);
 }
 TOBI_FN void sph_viscous_shape_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
                                     sph_viscous_shape_acc *a, const int shape)
 {
+    const lane r = lane_sqrt(n->r2);
     (void)i;
     sph_moments_add(&a->m, sph_viscous_weight(v, n, a->mu, shape), n);
+    a->square += smoothing_falloff(shape, r*v->inverse_h, r)*n->r2;
 }
 TOBI_FN void sph_viscous_shape_finish(const sph_view *v, int64_t i, sph_viscous_shape_acc *a, double *totals)
 {
     const sph_matrix m = sph_moments_sum(&a->m, sph_viscous_share(v, i));
-    const float trace = m.xx + m.yy + m.zz;
     float along[3] = {0, 0, 0};
     (void)totals;
     for (int p = 0; p < v->plane_count; p++) {
@@ -73,12 +78,12 @@ TOBI_FN void sph_viscous_shape_finish(const sph_view *v, int64_t i, sph_viscous_
         if (s > 0) along[v->plane[p].axis] += s*sph_plane_value(v, v->table->sigma, s);
     }
     v->viscous.turning[i] = (tobi_float4){m.yy + m.zz, m.zz + m.xx, m.xx + m.yy, -m.xy};
-    v->viscous.lack[i] = (tobi_float4){-m.yz, -m.zx, 0, trace > 0 ? 1/trace : 0};
+    v->viscous.lack[i] = (tobi_float4){-m.yz, -m.zx, 0, v->slope*lane_sum(a->square)};
     v->viscous.direction[i] = (tobi_float4){along[0], along[1], along[2], 0};
     v->viscous.product[i] = (tobi_float4){0, 0, 0, 0};
 }
 
-/* lack.z = r, eq. (3b); turning = J with what walls add. */
+/* lack.z = r, eq. (3b); lack.w = s, eq. (2c), 0 without neighbours; turning = J with both. */
 TOBI_FN void sph_viscous_close(const sph_view *v, int64_t i, double *totals)
 {
     const tobi_float4 j = v->viscous.turning[i], l = v->viscous.lack[i], n = v->viscous.direction[i],
@@ -90,10 +95,11 @@ TOBI_FN void sph_viscous_close(const sph_view *v, int64_t i, double *totals)
     (void)totals;
     if (square > 1e-4f*walls*walls) r = lacks/square;
     r = walls > 0 ? fminf(fmaxf(r, 0), 2) : 0;
-    const float wall = r*walls, more = 2e-6f*all;
-    v->viscous.turning[i] = (tobi_float4){j.x + wall - r*n.x + more, j.y + wall - r*n.y + more,
-                                          j.z + wall - r*n.z + more, j.w - r*o.x};
-    v->viscous.lack[i] = (tobi_float4){l.x - r*o.y, l.y - r*o.z, r, l.w};
+    const float wall = r*walls, whole = share*(l.w + v->moment_lattice*wall), more = 2e-6f*all;
+    const float s = l.w > 0 ? 1/fmaxf(whole, SPH_VISCOUS_SPARSE) : 0;
+    v->viscous.turning[i] = (tobi_float4){s*j.x + wall - r*n.x + more, s*j.y + wall - r*n.y + more,
+                                          s*j.z + wall - r*n.z + more, s*j.w - r*o.x};
+    v->viscous.lack[i] = (tobi_float4){s*l.x - r*o.y, s*l.y - r*o.z, r, s};
 }
 
 /* What `turn` is as a rotation around i: J^-1 turn. */
@@ -104,33 +110,52 @@ TOBI_FN tobi_float4 sph_viscous_turned(const sph_view *v, int64_t i, tobi_float4
     return l.w > 0 ? sph_solve(&m, turn) : (tobi_float4){0, 0, 0, 0};
 }
 
+/* s E of eq. (2b), M by J; g: rows of the sum of 4 F mu_ij (w_j - w_i) x x_ji. */
+TOBI_FN sph_matrix sph_viscous_expansion(const sph_view *v, int64_t i, const tobi_float4 g[3])
+{
+    const tobi_float4 j = v->viscous.turning[i], o = v->viscous.lack[i];
+    const float half = 0.5f*(j.x + j.y + j.z), mean = half/v->dimension + 1e-30f;
+    const float more = SPH_VISCOUS_LEAST*mean, xx = half - j.x + more, yy = half - j.y + more,
+                zz = v->dimension > 2 ? half - j.z + more : 1, xy = -j.w, yz = -o.x, zx = -o.y;
+    const float a = yy*zz - yz*yz, d = zx*yz - xy*zz, e = xy*yz - zx*yy;
+    const float f = xx*zz - zx*zx, h = xy*zx - xx*yz, l = v->dimension > 2 ? xx*yy - xy*xy : 0;
+    const float all = a*g[0].x + f*g[1].y + l*g[2].z + d*(g[0].y + g[1].x) + h*(g[1].z + g[2].y) +
+                      e*(g[2].x + g[0].z);
+    const float one = o.w*(mean + more)/(xx*a + xy*d + zx*e);
+    const float q = one*one*sph_viscous_share(v, i)*all/(mean*v->dimension);
+    return (sph_matrix){q*a, q*f, q*l, q*d, q*h, q*e};
+}
+
 /* accel = the rotation that takes most from the differences of velocity around i, eq. (2), (3b), but for what
-   bodies add; w = the expansion that does so, eq. (2b). */
-typedef struct sph_viscous_spin_acc { lane wx, wy, wz, x, y, z, along, mu; } sph_viscous_spin_acc;
+   bodies add; spread, slant = s beta E, eq. (2b). Their w: the operand. */
+typedef struct sph_viscous_spin_acc { lane wx, wy, wz, g[3][3], mu; } sph_viscous_spin_acc;
 TOBI_FN void sph_viscous_spin_start(const sph_view *v, int64_t i, sph_viscous_spin_acc *a)
 {
     const tobi_float4 w = v->viscous.operand[i];
     a->wx = lane_set(w.x); a->wy = lane_set(w.y); a->wz = lane_set(w.z);
-    a->x = a->y = a->z = a->along = lane_set(0);
+    for (int c = 0; c < 3; c++) a->g[c][0] = a->g[c][1] = a->g[c][2] = lane_set(0);
     a->mu = sph_viscous_own(v, i);
 }
 TOBI_FN void sph_viscous_spin_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
                                    sph_viscous_spin_acc *a, const int shape)
 {
-    lane x, y, z, none;
+    lane w[3], none;
     const lane f = sph_viscous_weight(v, n, a->mu, shape);
     (void)i;
-    lane_load_float4(v->viscous.operand, n->j, &x, &y, &z, &none);
-    x = f*(a->wx - x); y = f*(a->wy - y); z = f*(a->wz - z);
-    a->x += n->dy*z - n->dz*y; a->y += n->dz*x - n->dx*z; a->z += n->dx*y - n->dy*x;
-    a->along += n->dx*x + n->dy*y + n->dz*z;
+    lane_load_float4(v->viscous.operand, n->j, &w[0], &w[1], &w[2], &none);
+    w[0] = f*(a->wx - w[0]); w[1] = f*(a->wy - w[1]); w[2] = f*(a->wz - w[2]);
+    for (int c = 0; c < 3; c++) {
+        a->g[c][0] += w[c]*n->dx; a->g[c][1] += w[c]*n->dy; a->g[c][2] += w[c]*n->dz;
+    }
 }
 TOBI_FN void sph_viscous_spin_finish(const sph_view *v, int64_t i, sph_viscous_spin_acc *a, double *totals)
 {
-    const tobi_float4 sum = lane_sum4(a->x, a->y, a->z, a->along), w = v->viscous.operand[i];
-    const float k = sph_viscous_share(v, i), r = v->viscous.lack[i].z;
-    float turn[3] = {k*sum.x, k*sum.y, k*sum.z};
+    const tobi_float4 w = v->viscous.operand[i];
+    const float k = sph_viscous_share(v, i), r = v->viscous.lack[i].z, t = v->viscous.lack[i].w*k;
+    tobi_float4 g[3];
     (void)totals;
+    for (int c = 0; c < 3; c++) g[c] = lane_sum4(a->g[c][0], a->g[c][1], a->g[c][2], lane_set(0));
+    float turn[3] = {t*(g[2].y - g[1].z), t*(g[0].z - g[2].x), t*(g[1].x - g[0].y)};
     for (int p = 0; p < v->plane_count; p++) {
         const tobi_plane *wall = &v->plane[p];
         const float s = sph_viscous_reach(v, p, i);
@@ -140,35 +165,50 @@ TOBI_FN void sph_viscous_spin_finish(const sph_view *v, int64_t i, sph_viscous_s
         turn[d] += b*(v->viscous.moving*wall->velocity[e] - (&w.x)[e]);
         turn[e] -= b*(v->viscous.moving*wall->velocity[d] - (&w.x)[d]);
     }
-    tobi_float4 out = sph_viscous_turned(v, i, (tobi_float4){turn[0], turn[1], turn[2], 0});
-    out.w = k*sum.w*v->viscous.lack[i].w;
-    v->accel[i] = out;
+    const tobi_float4 spin = sph_viscous_turned(v, i, (tobi_float4){turn[0], turn[1], turn[2], 0});
+    const sph_matrix e = sph_viscous_expansion(v, i, g);
+    const float beta = SPH_VISCOUS_BULK;
+    v->accel[i] = (tobi_float4){spin.x, spin.y, spin.z, w.x};
+    v->viscous.spread[i] = (tobi_float4){beta*e.xx, beta*e.yy, beta*e.zz, w.y};
+    v->viscous.slant[i] = (tobi_float4){beta*e.xy, beta*e.yz, beta*e.zx, w.z};
 }
 
-/* sum over j of 4 V F mu_ij (w_j - w_i - (Omega_i + Omega_j)/2 x x_ji + beta (alpha_i + alpha_j) x_ji),
-   eq. (1), (2b): N/m3 where w is a velocity. */
-typedef struct sph_viscous_acc { lane wx, wy, wz, ox, oy, oz, ow, x, y, z, all, mu; } sph_viscous_acc;
+/* sum over j of 4 V F mu_ij ((s_i + s_j)/2 (w_j - w_i) - (s_i Omega_i + s_j Omega_j)/2 x x_ji +
+   beta (s_i E_i + s_j E_j) x_ji), eq. (1): N/m3 where w is a velocity. */
+typedef struct sph_viscous_acc {
+    tobi_float4 turn, spread, slant;
+    float scale;
+    lane x, y, z, all, mu;
+} sph_viscous_acc;
 TOBI_FN void sph_viscous_begin(const sph_view *v, int64_t i, sph_viscous_acc *a)
 {
-    const tobi_float4 w = v->viscous.operand[i], o = v->accel[i];
-    a->wx = lane_set(w.x); a->wy = lane_set(w.y); a->wz = lane_set(w.z);
-    a->ox = lane_set(o.x); a->oy = lane_set(o.y); a->oz = lane_set(o.z); a->ow = lane_set(o.w);
+    a->turn = v->accel[i];
+    a->scale = v->viscous.lack[i].w;
+    a->spread = v->viscous.spread[i];
+    a->slant = v->viscous.slant[i];
     a->x = a->y = a->z = a->all = lane_set(0);
     a->mu = sph_viscous_own(v, i);
 }
 TOBI_FN void sph_viscous_add(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_viscous_acc *a,
                              const int shape)
 {
-    lane x, y, z, ox, oy, oz, ow, none;
+    lane x, y, z, ox, oy, oz, xx, yy, zz, xy, yz, zx;
     const lane f = sph_viscous_weight(v, n, a->mu, shape);
-    lane_load_float4(v->viscous.operand, n->j, &x, &y, &z, &none);
-    lane_load_float4(v->accel, n->j, &ox, &oy, &oz, &ow);
-    ox = 0.5f*(ox + a->ox); oy = 0.5f*(oy + a->oy); oz = 0.5f*(oz + a->oz);
-    ow = SPH_VISCOUS_BULK*(ow + a->ow);
-    a->x += f*(x - a->wx + oy*n->dz - oz*n->dy - ow*n->dx);
-    a->y += f*(y - a->wy + oz*n->dx - ox*n->dz - ow*n->dy);
-    a->z += f*(z - a->wz + ox*n->dy - oy*n->dx - ow*n->dz);
-    a->all += lane_where_equal(n->index, lane_set_int((int32_t)i), lane_set(0), f);
+    lane_load_float4(v->accel, n->j, &ox, &oy, &oz, &x);
+    lane_load_float4(v->viscous.spread, n->j, &xx, &yy, &zz, &y);
+    lane_load_float4(v->viscous.slant, n->j, &xy, &yz, &zx, &z);
+    lane theirs, none[3];
+    lane_load_float4(v->viscous.lack, n->j, &none[0], &none[1], &none[2], &theirs);
+    theirs = 0.5f*theirs;
+    const float own = 0.5f*a->scale;
+    const lane both = theirs + own;
+    ox = theirs*ox + own*a->turn.x; oy = theirs*oy + own*a->turn.y; oz = theirs*oz + own*a->turn.z;
+    xx += a->spread.x; yy += a->spread.y; zz += a->spread.z;
+    xy += a->slant.x; yz += a->slant.y; zx += a->slant.z;
+    a->x += f*(both*(x - a->turn.w) - xx*n->dx + (-oz - xy)*n->dy + (oy - zx)*n->dz);
+    a->y += f*(both*(y - a->spread.w) + (oz - xy)*n->dx - yy*n->dy + (-ox - yz)*n->dz);
+    a->z += f*(both*(z - a->slant.w) + (-oy - zx)*n->dx + (ox - yz)*n->dy - zz*n->dz);
+    a->all += lane_where_equal(n->index, lane_set_int((int32_t)i), lane_set(0), f*both);
 }
 
 /* Friction of the no-slip planes at velocity w and the rotation in accel, N/m3, eq. (3); and what it is of

@@ -15,7 +15,7 @@ enum {
     VISCOUS, VISCOUS_EXPECTED = VISCOUS + 3, VISCOUS_RESIDUAL = VISCOUS_EXPECTED + 3,
     VISCOUS_DIRECTION = VISCOUS_RESIDUAL + 3, VISCOUS_PRODUCT = VISCOUS_DIRECTION + 3,
     VISCOUS_INVERSE = VISCOUS_PRODUCT + 3, TURNING = VISCOUS_INVERSE + 3, LACK = TURNING + 4,
-    APPARENT = LACK + 4, SHEAR_RATE, ROUGH, COLUMNS = ROUGH + 3
+    APPARENT = LACK + 4, SHEAR_RATE, ROUGH, SPREAD = ROUGH + 3, SLANT = SPREAD + 4, COLUMNS = SLANT + 4
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
@@ -37,7 +37,7 @@ typedef struct oracle {
     double d, h, volume, box[3];
     int periodic[3];
     double w_scale, g_scale, rate;       /* lattice normalisation of W and of its gradient; sum of V F */
-    double behind;                       /* what a lattice lacks at a wall, of a sum of 1 */
+    double behind, moment_lattice;       /* what a lattice lacks at a wall, of a sum of 1 */
     double lambda[TABLE + 2], sigma[TABLE + 2];
     int along;                           /* not 0: eq. (7c), or with near (7b) */
     const int32_t *last_link;            /* >= 0: with it, NULL: all */
@@ -74,7 +74,7 @@ static double plane_integral(const oracle *o, double s)
 static void oracle_normalise(oracle *o)
 {
     int n = 5, nz = o->dimension == 3 ? n : 0;
-    double w = 0, moment = 0, half = 0, behind = 0, all = 0;
+    double w = 0, moment = 0, half = 0, behind = 0, all = 0, normal = 0, along = 0;
     o->volume = pow(o->d, o->dimension);
     for (int k = -nz; k <= nz; k++)
         for (int j = -n; j <= n; j++)
@@ -85,12 +85,14 @@ static void oracle_normalise(oracle *o)
                 if (r == 0) continue;
                 moment += o->volume*oracle_f(o, r)*x*x;
                 all += o->volume*oracle_f(o, r);
-                if (i > 0) half += o->volume*oracle_f(o, r)*x;
+                if (i <= 0) continue;
+                half += o->volume*oracle_f(o, r)*x;
+                normal += oracle_f(o, r)*x*x;
+                along += oracle_f(o, r)*j*j*o->d*o->d;
             }
-    o->w_scale = 1/w;
-    o->behind = behind/w;
-    o->g_scale = 1/moment;
-    o->rate = all/moment;
+    o->w_scale = 1/w; o->behind = behind/w;
+    o->g_scale = 1/moment; o->rate = all/moment;
+    o->moment_lattice = (normal + (o->dimension - 1)*along)/(normal - along);
     for (int k = 0; k <= TABLE; k++) o->sigma[k] = plane_integral(o, o->h*k/TABLE);
     o->lambda[TABLE] = 0;
     for (int k = TABLE - 1; k >= 0; k--)

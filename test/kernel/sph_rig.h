@@ -77,6 +77,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->h = (float)g->c.h; v->inverse_h = (float)(1/g->c.h); v->shape = k->shape;
     v->weight = (float)g->c.weight; v->slope = (float)g->c.slope;
     v->wall_share = (float)g->c.wall_share; v->wall_lattice = (float)g->c.wall_lattice;
+    v->moment_lattice = (float)g->c.moment_lattice;
     v->inverse_rate = (float)(1/g->c.rate); v->spacing = (float)g->c.spacing; v->volume = (float)g->c.volume;
     v->dimension = k->dimension;
     v->surface_limit = (k->dimension == 3 ? 0.87f : 0.80f)*(float)k->dimension;
@@ -116,7 +117,8 @@ static void rig_bind_viscosity(rig *g, const double rho[2], const double nu[2])
     g->view.dynamic = (float)(rho[0]*nu[0]);
     g->view.viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
                                          f->viscous_direction, f->viscous_product, f->viscous_inverse,
-                                         f->viscous_turning, f->viscous_lack, f->viscous_velocity, 1,
+                                         f->viscous_turning, f->viscous_lack, f->viscous_spread,
+                                         f->viscous_slant, f->viscous_velocity, 1,
                                          f->apparent};
     for (int k = 0; k < 2; k++) {
         const double yield = 0.1 + 0.3*k, index = k == 0 ? 0.6 : 1, creep = 2, turbulent = 0.3 - 0.2*k;
@@ -281,6 +283,8 @@ static void rig_get(const rig *g, row *s)
         for (int a = 0; a < 4; a++) s[i][WALL + a] = (&f->wall[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][TURNING + a] = (&f->viscous_turning[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][LACK + a] = (&f->viscous_lack[i].x)[a];
+        for (int a = 0; a < 4; a++) s[i][SPREAD + a] = (&f->viscous_spread[i].x)[a];
+        for (int a = 0; a < 4; a++) s[i][SLANT + a] = (&f->viscous_slant[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][NORMAL + a] = (&f->normal[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][TENSOR + a] = (&f->stretch[i].x)[a];
         for (int a = 0; a < 3; a++) s[i][TENSOR + 4 + a] = (&f->shear[i].x)[a];
@@ -321,6 +325,8 @@ static void rig_set(rig *g, const row *s)
         for (int a = 0; a < 4; a++) (&f->wall[i].x)[a] = (float)s[i][WALL + a];
         for (int a = 0; a < 4; a++) (&f->viscous_turning[i].x)[a] = (float)s[i][TURNING + a];
         for (int a = 0; a < 4; a++) (&f->viscous_lack[i].x)[a] = (float)s[i][LACK + a];
+        for (int a = 0; a < 4; a++) (&f->viscous_spread[i].x)[a] = (float)s[i][SPREAD + a];
+        for (int a = 0; a < 4; a++) (&f->viscous_slant[i].x)[a] = (float)s[i][SLANT + a];
         for (int a = 0; a < 4; a++) (&f->normal[i].x)[a] = (float)s[i][NORMAL + a];
         for (int a = 0; a < 4; a++) (&f->stretch[i].x)[a] = (float)s[i][TENSOR + a];
         for (int a = 0; a < 3; a++) (&f->shear[i].x)[a] = (float)s[i][TENSOR + 4 + a];

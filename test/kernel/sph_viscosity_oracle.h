@@ -106,7 +106,7 @@ static void oracle_viscous_shape(const oracle *o, const row *in, row *out, doubl
                 j6[a] += f*(r*r - x[a]*x[a]);
                 j6[3 + a] -= f*x[a]*x[(a + 1)%3];
             }
-            trace += f*r*r;
+            trace += o->volume*o->g_scale*oracle_f(o, r)*r*r;
         }
         for (int k = 0; k < o->plane_count; k++) {
             double sigma, s = no_slip_distance(o, in, i, k, &sigma);
@@ -114,7 +114,7 @@ static void oracle_viscous_shape(const oracle *o, const row *in, row *out, doubl
         }
         memcpy(&out[i][TURNING], j6, sizeof j6);
         out[i][LACK + 2] = 0;
-        out[i][LACK + 3] = trace > 0 ? 1/trace : 0;
+        out[i][LACK + 3] = trace;
         for (int c = 0; c < 3; c++) {
             out[i][VISCOUS_DIRECTION + c] = n[c];
             out[i][VISCOUS_PRODUCT + c] = 0;
@@ -122,7 +122,7 @@ static void oracle_viscous_shape(const oracle *o, const row *in, row *out, doubl
     }
 }
 
-/* Eq. (3b): r by the parts without trace of the sum of x x and of N, then J with r (tr N - N). */
+/* Eq. (3b): r by the parts without trace of the sum of x x and of N, s of eq. (2c), then J with both. */
 static void oracle_viscous_close(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
@@ -143,27 +143,60 @@ static void oracle_viscous_close(const oracle *o, const row *in, row *out, doubl
         }
         if (square > 1e-4*walls*walls) r = both/square;
         r = walls > 0 ? fmin(fmax(r, 0), 2) : 0;
+        const double whole = (in[i][LACK + 3] + o->moment_lattice*r*walls)/o->dimension;
+        const double scale = in[i][LACK + 3] > 0 ? 1/fmax(whole, 0.4) : 0;
         for (int c = 0; c < 6; c++)
-            out[i][TURNING + c] = j[c] + (c < 3 ? r*walls + 2e-6*trace : 0) - r*n[c];
+            out[i][TURNING + c] = scale*j[c] + (c < 3 ? r*walls + 2e-6*trace : 0) - r*n[c];
         out[i][LACK + 2] = r;
+        out[i][LACK + 3] = scale;
     }
 }
 
-/* Eq. (2), (3b), by elimination. */
+static void eliminate(double m[3][4], double x[3])
+{
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            for (int c = 3; a != b && c >= a; c--) m[b][c] -= m[b][a]/m[a][a]*m[a][c];
+    for (int a = 0; a < 3; a++) x[a] = m[a][3]/m[a][a];
+}
+
+/* A of eq. (2b): (1 + delta) (M + delta m)^-1, a column at a time; m: what M is times s, of J. */
+static void make_equal(const oracle *o, double m[3][3], double mean, double a[3][3])
+{
+    for (int c = 0; c < 3; c++) {
+        double rows[3][4], column[3];
+        for (int k = 0; k < 3; k++) {
+            for (int l = 0; l < 3; l++) rows[k][l] = m[k][l] + (k == l ? 0.3*mean : 0);
+            rows[k][3] = k == c && k < o->dimension ? 1.3 : 0;
+        }
+        if (o->dimension < 3) rows[2][2] = 1;
+        eliminate(rows, column);
+        for (int k = 0; k < 3; k++) a[k][c] = column[k];
+    }
+}
+
+/* Eq. (2), (2b), (3b), by elimination. */
 static void oracle_viscous_spin(const oracle *o, const row *in, row *out, double *t)
 {
     static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
     (void)t;
     for (int i = 0; i < o->count; i++) {
-        const double share = 1/(4*viscosity_of(o, in, i)), *w = &in[i][VISCOUS];
-        double m[3][4] = {{0}}, along = 0;
+        const double share = 1/(4*viscosity_of(o, in, i)), *w = &in[i][VISCOUS], s = in[i][LACK + 3];
+        double m[3][4] = {{0}}, moments[3][3] = {{0}}, equal[3][3], alpha = 0;
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             double difference[3], turn[3];
             const double f = share*pair_weight(o, in, i, j, r);
             for (int c = 0; c < 3; c++) difference[c] = w[c] - in[j][VISCOUS + c];
             cross(x, difference, turn);
-            for (int c = 0; c < 3; c++) m[c][3] += f*turn[c];
-            for (int c = 0; c < 3; c++) along += f*difference[c]*x[c];
+            for (int c = 0; c < 3; c++) m[c][3] += s*f*turn[c];
+        }
+        const double *j6 = &in[i][TURNING], half = 0.5*(j6[0] + j6[1] + j6[2]), mean = half/o->dimension;
+        for (int k = 0; k < 9; k++) moments[k/3][k%3] = (k%4 ? 0 : half) - j6[place[k/3][k%3]];
+        make_equal(o, moments, mean, equal);
+        EACH_NEIGHBOUR(o, in, i, j, x, r) {
+            const double f = share*pair_weight(o, in, i, j, r);
+            for (int k = 0; k < 9; k++)
+                alpha += f*(w[k/3] - in[j][VISCOUS + k/3])*equal[k/3][k%3]*x[k%3]/o->dimension;
         }
         for (int k = 0; k < o->plane_count; k++) {
             double sigma, slip[3], pulled[3], normal[3] = {0};
@@ -175,11 +208,13 @@ static void oracle_viscous_spin(const oracle *o, const row *in, row *out, double
         }
         for (int a = 0; a < 3; a++)
             for (int b = 0; b < 3; b++) m[a][b] = in[i][TURNING + place[a][b]];
-        for (int a = 0; a < 3; a++)
-            for (int b = 0; b < 3; b++)
-                for (int c = 3; a != b && c >= a; c--) m[b][c] -= m[b][a]/m[a][a]*m[a][c];
-        for (int a = 0; a < 3; a++) out[i][ACC + a] = in[i][LACK + 3] > 0 ? m[a][3]/m[a][a] : 0;
-        out[i][BAND] = along*in[i][LACK + 3];
+        eliminate(m, &out[i][ACC]);
+        for (int a = 0; a < 3 && !(s > 0); a++) out[i][ACC + a] = 0;
+        for (int a = 0; a < 3; a++) {
+            out[i][SPREAD + a] = 8*s*s*alpha*mean*equal[a][a];
+            out[i][SLANT + a] = 8*s*s*alpha*mean*equal[a][(a + 1)%3];
+        }
+        out[i][BAND] = w[0]; out[i][SPREAD + 3] = w[1]; out[i][SLANT + 3] = w[2];
     }
 }
 
@@ -206,16 +241,20 @@ static void plane_friction(const oracle *o, const row *in, int i, double force[3
 /* Eq. (1), (3): the force per volume on i, w any field and accel its rotations; and what that is of w_i. */
 static void viscous_force(const oracle *o, const row *in, int i, double force[3], double own[3])
 {
+    static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
     for (int c = 0; c < 3; c++) force[c] = own[c] = 0;
     EACH_NEIGHBOUR(o, in, i, j, x, r) {
         double spin[3], turn[3];
-        const double f = pair_weight(o, in, i, j, r);
-        for (int c = 0; c < 3; c++) spin[c] = 0.5*(in[i][ACC + c] + in[j][ACC + c]);
+        const double f = pair_weight(o, in, i, j, r), a = 0.5*in[i][LACK + 3], b = 0.5*in[j][LACK + 3];
+        for (int c = 0; c < 3; c++) spin[c] = a*in[i][ACC + c] + b*in[j][ACC + c];
         cross(spin, x, turn);
         for (int c = 0; c < 3; c++) {
-            force[c] += f*(in[j][VISCOUS + c] - in[i][VISCOUS + c] + turn[c] -
-                           8*(in[i][BAND] + in[j][BAND])*x[c]);
-            own[c] += f;
+            double spread = 0;
+            for (int k = 0; k < 3; k++)
+                spread += (place[c][k] < 3 ? in[i][SPREAD + c] + in[j][SPREAD + c] :
+                           in[i][SLANT + place[c][k] - 3] + in[j][SLANT + place[c][k] - 3])*x[k];
+            force[c] += f*((a + b)*(in[j][VISCOUS + c] - in[i][VISCOUS + c]) + turn[c] - spread);
+            own[c] += f*(a + b);
         }
     }
     plane_friction(o, in, i, force, own);

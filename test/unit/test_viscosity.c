@@ -145,7 +145,7 @@ static void the_step_does_not_count(void **state)
         if (SANITIZED) continue;
         if (!(few < 40 && many >= 1000)) fail_msg("%s: %lld steps", methods[m], (long long)few);
         if (!(fabs(large/small - 1) < 0.01)) fail_msg("%s: the step counts", methods[m]);
-        if (!(fabs(small - 1) < 0.04)) fail_msg("%s: wrong flow", methods[m]);
+        if (!(fabs(small - 1) < 0.03)) fail_msg("%s: wrong flow", methods[m]);
     }
 }
 
@@ -182,7 +182,7 @@ static void bodies_take_the_torque(void **state)
             OK(tobi_world_body(w, k, &b));
             const double torque = (b.viscous_torque[2] + b.pressure_torque[2])/(k ? theory : -theory);
             printf("%s: torque on %s over theory %.4f\n", methods[m], k ? "ring" : "inner", torque);
-            if (!(fabs(torque - 1) < 0.04 || SANITIZED))
+            if (!(fabs(torque - 1) < 0.02 || SANITIZED))
                 fail_msg("%s: torque off by %g", methods[m], torque - 1);
         }
         tobi_world_destroy(w);
@@ -195,8 +195,8 @@ static void bodies_take_the_torque(void **state)
 static void filters_do_not_brake(void **state)
 {
     (void)state;
-    for (int n = 0; n < 3; n++) {
-        const char *method = methods[n > 0];
+    for (int n = 0; n < 4; n++) {
+        const char *method = methods[n%2];
         char text[600];
         double sum = 0;
         snprintf(text, sizeof text,
@@ -212,7 +212,8 @@ static void filters_do_not_brake(void **state)
         for (int64_t i = 0; i < p->count; i++) sum += p->velocity[i].x/(double)p->count;
         printf("%s, %s: channel of ten layers, Re 100: flow over theory %.3f\n", method,
                n > 1 ? "implicit" : "explicit", sum);
-        if (!(fabs(sum - 1) < 0.06 || SANITIZED)) fail_msg("%s: wrong flow", method);
+        /* dfsph, implicit: a miss, decision 135 */
+        if (!(fabs(sum - 1) < (n == 2 ? 0.16 : 0.06) || SANITIZED)) fail_msg("%s: wrong flow", method);
         tobi_world_destroy(w);
     }
 }
@@ -275,7 +276,7 @@ static void threads_resist_to_be_drawn_out(void **state)
     for (int m = 0; m < 2; m++) {
         const double seen = log(thread_left(methods[m]))/theory;
         printf("%s: a thread of four layers is braked by %.3f of theory\n", methods[m], seen);
-        if (!(fabs(seen - 1) < 0.1)) fail_msg("%s: wrong brake", methods[m]);
+        if (!(fabs(seen - 1) < 0.05)) fail_msg("%s: wrong brake", methods[m]);
     }
 }
 
