@@ -51,14 +51,14 @@ TOBI_FN float sph_viscous_reach(const sph_view *v, int plane, int64_t i)
     return s > least ? s : least;
 }
 
-/* turning = J of the pairs; lack.w = sum of V F x^2. Meanwhile direction (xx, yy, zz) and product (xy, yz,
-   zx) hold N, the sum of sigma s n n over plane walls; bodies add theirs. */
-typedef struct sph_viscous_shape_acc { lane mu, square; sph_moments m; } sph_viscous_shape_acc;
+/* turning = J of the pairs; spread (xx, yy, zz), slant (xy, yz, zx) = sum of V F x x, whatever the viscosities.
+   Meanwhile direction and product hold N, the sum of sigma s n n over plane walls; bodies add theirs. */
+typedef struct sph_viscous_shape_acc { lane mu; sph_moments m, even; } sph_viscous_shape_acc;
 TOBI_FN void sph_viscous_shape_start(const sph_view *v, int64_t i, sph_viscous_shape_acc *a)
 {
     a->mu = sph_viscous_own(v, i);
-    a->square = lane_set(0);
     sph_moments_clear(&a->m);
+    sph_moments_clear(&a->even);
 }
 TOBI_FN void sph_viscous_shape_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
                                     sph_viscous_shape_acc *a, const int shape)
@@ -66,11 +66,12 @@ TOBI_FN void sph_viscous_shape_pair(const sph_view *v, int64_t i, const tobi_nei
     const lane r = lane_sqrt(n->r2);
     (void)i;
     sph_moments_add(&a->m, sph_viscous_weight(v, n, a->mu, shape), n);
-    a->square += smoothing_falloff(shape, r*v->inverse_h, r)*n->r2;
+    sph_moments_add(&a->even, smoothing_falloff(shape, r*v->inverse_h, r), n);
 }
 TOBI_FN void sph_viscous_shape_finish(const sph_view *v, int64_t i, sph_viscous_shape_acc *a, double *totals)
 {
-    const sph_matrix m = sph_moments_sum(&a->m, sph_viscous_share(v, i));
+    const sph_matrix m = sph_moments_sum(&a->m, sph_viscous_share(v, i)),
+                     even = sph_moments_sum(&a->even, v->slope);
     float along[3] = {0, 0, 0};
     (void)totals;
     for (int p = 0; p < v->plane_count; p++) {
@@ -78,28 +79,41 @@ TOBI_FN void sph_viscous_shape_finish(const sph_view *v, int64_t i, sph_viscous_
         if (s > 0) along[v->plane[p].axis] += s*sph_plane_value(v, v->table->sigma, s);
     }
     v->viscous.turning[i] = (tobi_float4){m.yy + m.zz, m.zz + m.xx, m.xx + m.yy, -m.xy};
-    v->viscous.lack[i] = (tobi_float4){-m.yz, -m.zx, 0, v->slope*lane_sum(a->square)};
+    v->viscous.lack[i] = (tobi_float4){-m.yz, -m.zx, 0, 0};
+    v->viscous.spread[i] = (tobi_float4){even.xx, even.yy, even.zz, 0};
+    v->viscous.slant[i] = (tobi_float4){even.xy, even.yz, even.zx, 0};
     v->viscous.direction[i] = (tobi_float4){along[0], along[1], along[2], 0};
     v->viscous.product[i] = (tobi_float4){0, 0, 0, 0};
+}
+
+/* r of eq. (3b): what M lacks along the normals of walls, N, over N. */
+TOBI_FN float sph_viscous_lacks(const sph_matrix *m, const sph_matrix *n, int dimension)
+{
+    const float walls = n->xx + n->yy + n->zz, wall = walls/dimension;
+    const float all = (m->xx + m->yy + m->zz)/dimension;
+    const float a = n->xx - wall, b = n->yy - wall, c = dimension > 2 ? n->zz - wall : 0;
+    const float square = a*a + b*b + c*c + 2*(n->xy*n->xy + n->yz*n->yz + n->zx*n->zx);
+    const float both = a*(m->xx - all) + b*(m->yy - all) + c*(m->zz - all) +
+                       2*(n->xy*m->xy + n->yz*m->yz + n->zx*m->zx);
+    if (!(walls > 0)) return 0;
+    return square > 1e-4f*walls*walls ? fminf(fmaxf(-both/square, 0), 2) : 1;
 }
 
 /* lack.z = r, eq. (3b); lack.w = s, eq. (2c), 0 without neighbours; turning = J with both. */
 TOBI_FN void sph_viscous_close(const sph_view *v, int64_t i, double *totals)
 {
-    const tobi_float4 j = v->viscous.turning[i], l = v->viscous.lack[i], n = v->viscous.direction[i],
-                      o = v->viscous.product[i];
-    const float all = 0.5f*(j.x + j.y + j.z), walls = n.x + n.y + n.z, share = 1.0f/v->dimension;
-    const float a = n.x - share*walls, b = n.y - share*walls, c = v->dimension > 2 ? n.z - share*walls : 0;
-    const float square = a*a + b*b + c*c + 2*(o.x*o.x + o.y*o.y + o.z*o.z);
-    float lacks = a*(j.x - all) + b*(j.y - all) + c*(j.z - all) + 2*(o.x*j.w + o.y*l.x + o.z*l.y), r = 1;
+    const tobi_float4 j = v->viscous.turning[i], l = v->viscous.lack[i], d = v->viscous.direction[i],
+                      o = v->viscous.product[i], e = v->viscous.spread[i], g = v->viscous.slant[i];
+    const float all = 0.5f*(j.x + j.y + j.z), walls = d.x + d.y + d.z, even = e.x + e.y + e.z;
+    const sph_matrix m = {all - j.x, all - j.y, all - j.z, -j.w, -l.x, -l.y},
+                     n = {d.x, d.y, d.z, o.x, o.y, o.z}, bare = {e.x, e.y, e.z, g.x, g.y, g.z};
+    const float r = sph_viscous_lacks(&m, &n, v->dimension), wall = r*walls, more = 2e-6f*all;
+    const float whole = even + v->moment_lattice*walls*sph_viscous_lacks(&bare, &n, v->dimension);
+    const float s = even > 0 ? 1/fmaxf(whole/v->dimension, SPH_VISCOUS_SPARSE) : 0;
     (void)totals;
-    if (square > 1e-4f*walls*walls) r = lacks/square;
-    r = walls > 0 ? fminf(fmaxf(r, 0), 2) : 0;
-    const float wall = r*walls, whole = share*(l.w + v->moment_lattice*wall), more = 2e-6f*all;
-    const float s = l.w > 0 ? 1/fmaxf(whole, SPH_VISCOUS_SPARSE) : 0;
-    v->viscous.turning[i] = (tobi_float4){s*j.x + wall - r*n.x + more, s*j.y + wall - r*n.y + more,
-                                          s*j.z + wall - r*n.z + more, s*j.w - r*o.x};
-    v->viscous.lack[i] = (tobi_float4){s*l.x - r*o.y, s*l.y - r*o.z, r, s};
+    v->viscous.turning[i] = (tobi_float4){s*j.x + wall - r*n.xx + more, s*j.y + wall - r*n.yy + more,
+                                          s*j.z + wall - r*n.zz + more, s*j.w - r*n.xy};
+    v->viscous.lack[i] = (tobi_float4){s*l.x - r*n.yz, s*l.y - r*n.zx, r, s};
 }
 
 /* What `turn` is as a rotation around i: J^-1 turn. */

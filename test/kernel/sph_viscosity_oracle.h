@@ -99,14 +99,19 @@ static void oracle_viscous_shape(const oracle *o, const row *in, row *out, doubl
     (void)t;
     for (int i = 0; i < o->count; i++) {
         const double share = 1/(4*viscosity_of(o, in, i));
-        double j6[6] = {0}, trace = 0, n[3] = {0};
+        double j6[6] = {0}, n[3] = {0};
+        memset(&out[i][SPREAD], 0, 8*sizeof(double));
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             const double f = share*pair_weight(o, in, i, j, r);
             for (int a = 0; a < 3; a++) {
                 j6[a] += f*(r*r - x[a]*x[a]);
                 j6[3 + a] -= f*x[a]*x[(a + 1)%3];
             }
-            trace += o->volume*o->g_scale*oracle_f(o, r)*r*r;
+            for (int a = 0; a < 3; a++) {
+                const double even = o->volume*o->g_scale*oracle_f(o, r)*x[a];
+                out[i][SPREAD + a] += even*x[a];
+                out[i][SLANT + a] += even*x[(a + 1)%3];
+            }
         }
         for (int k = 0; k < o->plane_count; k++) {
             double sigma, s = no_slip_distance(o, in, i, k, &sigma);
@@ -114,7 +119,7 @@ static void oracle_viscous_shape(const oracle *o, const row *in, row *out, doubl
         }
         memcpy(&out[i][TURNING], j6, sizeof j6);
         out[i][LACK + 2] = 0;
-        out[i][LACK + 3] = trace;
+        out[i][LACK + 3] = 0;
         for (int c = 0; c < 3; c++) {
             out[i][VISCOUS_DIRECTION + c] = n[c];
             out[i][VISCOUS_PRODUCT + c] = 0;
@@ -122,29 +127,38 @@ static void oracle_viscous_shape(const oracle *o, const row *in, row *out, doubl
     }
 }
 
-/* Eq. (3b): r by the parts without trace of the sum of x x and of N, s of eq. (2c), then J with both. */
+/* Eq. (3b): by the parts without trace of a sum of x x and of N, both xx, yy, zz, xy, yz, zx. */
+static double find_lacks(const oracle *o, const double m[6], const double n[6])
+{
+    const double walls = n[0] + n[1] + n[2], all = m[0] + m[1] + m[2];
+    double both = 0, square = 0;
+    for (int c = 0; c < 6; c++) {
+        const int diagonal = c < 3, inside = c < o->dimension || !diagonal;
+        const double part = inside ? n[c] - diagonal*walls/o->dimension : 0;
+        square += (diagonal ? 1 : 2)*part*part;
+        both -= (diagonal ? 1 : 2)*part*(m[c] - diagonal*all/o->dimension);
+    }
+    if (!(walls > 0)) return 0;
+    return square > 1e-4*walls*walls ? fmin(fmax(both/square, 0), 2) : 1;
+}
+
+/* r, s of eq. (2c), J with both. */
 static void oracle_viscous_close(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
     for (int i = 0; i < o->count; i++) {
         const double *j = &in[i][TURNING], trace = 0.5*(j[0] + j[1] + j[2]);
-        double n[6], walls = 0, both = 0, square = 0, r = 1;
+        double n[6], m[6], bare[6];
         for (int c = 0; c < 3; c++) {
             n[c] = in[i][VISCOUS_DIRECTION + c];
             n[3 + c] = in[i][VISCOUS_PRODUCT + c];
-            walls += n[c];
+            bare[c] = in[i][SPREAD + c];
+            bare[3 + c] = in[i][SLANT + c];
         }
-        for (int c = 0; c < 6; c++) {
-            const int diagonal = c < 3, inside = c < o->dimension || !diagonal;
-            const double part = inside ? n[c] - diagonal*walls/o->dimension : 0;
-            const double moment = diagonal ? trace - j[c] : -j[c];
-            square += (diagonal ? 1 : 2)*part*part;
-            both -= (diagonal ? 1 : 2)*part*moment;
-        }
-        if (square > 1e-4*walls*walls) r = both/square;
-        r = walls > 0 ? fmin(fmax(r, 0), 2) : 0;
-        const double whole = (in[i][LACK + 3] + o->moment_lattice*r*walls)/o->dimension;
-        const double scale = in[i][LACK + 3] > 0 ? 1/fmax(whole, 0.4) : 0;
+        for (int c = 0; c < 6; c++) m[c] = (c < 3 ? trace : 0) - j[c];
+        const double walls = n[0] + n[1] + n[2], even = bare[0] + bare[1] + bare[2], r = find_lacks(o, m, n);
+        const double whole = (even + o->moment_lattice*find_lacks(o, bare, n)*walls)/o->dimension;
+        const double scale = even > 0 ? 1/fmax(whole, 0.4) : 0;
         for (int c = 0; c < 6; c++)
             out[i][TURNING + c] = scale*j[c] + (c < 3 ? r*walls + 2e-6*trace : 0) - r*n[c];
         out[i][LACK + 2] = r;
