@@ -47,7 +47,7 @@ def slump(method, layers, share):
     label = f"slump_{method}_{layers}_{share}"
     out = case.run(label, scene=case.write_scene(label, {
         "domain": {"min": [-room, -room, 0], "max": [room, room, 1.2*HIGH], "walls": {"z": "no-slip"}}, "spacing": d,
-        "end_time": case.pick(1, 4), "method": method, "implicit_viscosity": True,
+        "end_time": case.pick(2, 4), "method": method, "implicit_viscosity": True,
         "fluids": [{"name": "concrete", "density": RHO, "viscosity": 100, "yield_stress": share*RHO*G*HIGH,
                     "fill": [{"mesh": str(ROOT/"test"/"meshes"/"cylinder.obj"), "scale": HIGH, "translation": [0, 0, HIGH/2]}]}],
         "output": {"interval": 0.2, "surfaces": False}}))
