@@ -51,7 +51,7 @@ TOBI_FN float sph_viscous_reach(const sph_view *v, int plane, int64_t i)
     return s > least ? s : least;
 }
 
-/* turning = J of the pairs; spread (xx, yy, zz), slant (xy, yz, zx) = sum of V F x x, whatever the viscosities.
+/* turning = J of the pairs; spread (xx, yy, zz), slant (xy, yz, zx) = sum of V F x x without viscosities.
    Meanwhile direction and product hold N, the sum of sigma s n n over plane walls; bodies add theirs. */
 typedef struct sph_viscous_shape_acc { lane mu; sph_moments m, even; } sph_viscous_shape_acc;
 TOBI_FN void sph_viscous_shape_start(const sph_view *v, int64_t i, sph_viscous_shape_acc *a)

@@ -120,7 +120,8 @@ static void heaps_stand(void **state)
             snprintf(text, sizeof text,
                      "{\"dimension\": 2, \"domain\": {\"min\": [-0.2, 0], \"max\": [0.2, 0.15],"
                      " \"walls\": {\"y\": \"no-slip\"}}, \"gravity\": [0, -9.81], \"spacing\": 0.01,"
-                     " \"end_time\": 5, \"method\": \"%s\", \"implicit_viscosity\": true, \"time_step_max\": %g,"
+                     " \"end_time\": 5, \"method\": \"%s\", \"implicit_viscosity\": true,"
+                     " \"time_step_max\": %g,"
                      " \"fluids\": [{\"name\": \"mud\", \"viscosity\": 5, \"yield_stress\": %d,"
                      " \"fill\": [{\"box\": {\"min\": [-0.05, 0], \"max\": [0.05, 0.1]}}]}]}",
                      methods[m], m == 1 && stiff ? 5e-4 : 1, stiff ? 1500 : 100);
