@@ -154,7 +154,9 @@ enum { TOBI_CONTROL_STATE = 16 };
 enum { TOBI_CONTROL_JOINTS = 16 };
 typedef struct tobi_control_joint {
     const char *name;           /* as in joints.csv: of the joint, or of a body with a hinge         */
-    double angle, speed;        /* degrees since the start, degrees/s: of body against to_body        */
+    union { double angle, position; };  /* degrees since the start, of body against to_body; m        */
+    double speed;               /* degrees/s, m/s                                                    */
+    int    slides;              /* 1: a guide, with position and speed in m                          */
 } tobi_control_joint;
 /* What a control program sees of its body, in world axes, and what it answers. */
 typedef struct tobi_control_input {
@@ -172,7 +174,7 @@ typedef struct tobi_control_input {
     double step;                /* s, length of the last step                                        */
     double steer[3];            /* what the program said last; 0 at the start                        */
     double state[TOBI_CONTROL_STATE];   /* the same                                                  */
-    tobi_control_joint joints[TOBI_CONTROL_JOINTS];     /* hinges of the body                        */
+    tobi_control_joint joints[TOBI_CONTROL_JOINTS];     /* hinges or guide of the body               */
     int    joint_count;
 } tobi_control_input;
 typedef struct tobi_control_output {
@@ -183,7 +185,7 @@ typedef struct tobi_control_output {
     double steer[3];            /* numbers for the motion of a body that changes its shape           */
     double state[TOBI_CONTROL_STATE];   /* of the next step on, for the program alone: integrals     */
     double motor[TOBI_CONTROL_JOINTS];  /* what the motor of each of the input's joints is told from the
-                                   next step on, degrees/s, degrees or N m; TOBI_NOT_GIVEN = as before */
+                                   next step on, in its unit; TOBI_NOT_GIVEN = as before             */
 } tobi_control_output;
 /* Must be a pure function of its input, or restarts would not repeat a run. At first out holds zeros, the
    input's phase, steer and state, and TOBI_NOT_GIVEN. hold must stay valid until the next call. */
@@ -193,14 +195,16 @@ typedef tobi_status (*tobi_control_fn)(void *user, const tobi_control_input *in,
 #define TOBI_NO_PLACE (-1e9)
 #define TOBI_NOT_GIVEN (-1e9)
 
-/* The motor of a hinge: one of speed, angle and torque, or a file. tobi_default_joint_def and
-   tobi_default_body_def give none of them, which is no motor. */
+/* The motor of a hinge: one of speed, angle and torque, or a file; of a guide one of speed, position and
+   force. tobi_default_joint_def and tobi_default_body_def give none of them, which is no motor. */
 typedef struct tobi_motor_def {
-    double speed, angle, torque;    /* degrees/s, degrees since the start, N m; or TOBI_NOT_GIVEN     */
-    const char *file;               /* CSV: time (s) and one of speed, angle, torque; NULL = none     */
+    double speed;                   /* degrees/s, of a guide m/s; or TOBI_NOT_GIVEN                   */
+    union { double angle, position; };  /* degrees, m, since the start; or TOBI_NOT_GIVEN             */
+    union { double torque, force; };    /* N m, N; or TOBI_NOT_GIVEN                                  */
+    const char *file;               /* CSV: time (s) and one of those; NULL = none                    */
     double amplitude, period, phase;    /* of a swing that is added: in the unit of that; s; degrees  */
     double start, ramp;             /* s: 0 until start, then it grows so long, as motions do         */
-    double torque_max;              /* N m, of speed and angle; 0 = no bound                          */
+    union { double torque_max, force_max; };    /* N m, N, of a speed or angle, position; 0 = no bound */
 } tobi_motor_def;
 
 /* A body: the inside of a closed mesh, or of one of the shapes, prescribed or moved by forces. */
@@ -262,6 +266,7 @@ typedef struct tobi_body_def {
     double guide_axis[3];                   /* direction: it slides along a fixed axis; 0 = no        */
     double guide_lower, guide_upper;        /* m from the start, stops; both 0 = none                 */
     double guide_stiffness, guide_damping;  /* N/m, N s/m                                             */
+    tobi_motor_def guide_motor;
     tobi_control_fn control;    /* of a controlled body                                              */
     void  *control_user;        /* handed to control; owned by the caller, must outlive the world    */
     tobi_steer_fn motion_steer; /* of a controlled body with a motion, gets motion_user; NULL = none */
@@ -372,8 +377,10 @@ typedef struct tobi_joint_info {
     double angle;               /* degrees since the start, of the body against the other            */
     double gap;                 /* m between what is joined                                          */
     double motor_torque;        /* N m about the axis on the body, of a motor, mean over the step    */
+    double motor_force;         /* N along the guide on the body, likewise                           */
     double power;               /* W that damper and motor take from the bodies, mean over the step  */
     int    has_motor, has_power;    /* 1: it has a motor; a motor or a damper                        */
+    int    slides;              /* 1: a guide                                                        */
 } tobi_joint_info;
 
 /* What pictures show, and from where. */

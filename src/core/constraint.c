@@ -174,7 +174,7 @@ static void make_rows(const tobi_constraints *c, const tobi_constraint *j, const
         const int about = i == last || r == motor;
         r->stop = i == last && !fixed;
         r->motor = r != motor ? 0 : j->motor.kind == TOBI_MOTOR_TORQUE ? -1 : 1;
-        r->turns = about || i >= c->dimension;
+        r->turns = (about || i >= c->dimension) && !j->slides;
         memcpy(r->axis, about ? axis[0] : r->turns ? across[i - c->dimension] : along, sizeof r->axis);
         memset(r->jacobian, 0, sizeof r->jacobian);
         for (int side = 0; side < 2; side++) {

@@ -5,14 +5,15 @@
 #include "core/body.h"
 
 enum { TOBI_CONSTRAINT_ROWS = 7 };       /* of a hinge in 3-D with stops and a motor                    */
-enum { TOBI_BETWEEN_MOTOR = 3 };         /* besides tobi_joint_between: the motor of a body's own hinge  */
+enum { TOBI_BETWEEN_MOTOR = 3 };         /* besides tobi_joint_between: the motor of a body's own joint  */
 
 /* What a motor is told: nothing, how fast, how far, how strong. */
 typedef enum tobi_motor_kind {
     TOBI_MOTOR_NONE, TOBI_MOTOR_SPEED, TOBI_MOTOR_ANGLE, TOBI_MOTOR_TORQUE
 } tobi_motor_kind;
 
-/* The motor of a hinge: a row about its axis whose impulse is bounded, or a torque (core/motor.c). */
+/* The motor of a hinge: a row about its axis whose impulse is bounded, or a torque (core/motor.c). Of a guide
+   a row along it, and a force; then rad is m, and N m is N. */
 typedef struct tobi_motor {
     int kind;                            /* tobi_motor_kind                                             */
     double most;                         /* N m, INFINITY: no bound                                     */
@@ -51,10 +52,11 @@ typedef struct tobi_constraint {
     int body[2];                         /* that is joined, and to which; -1: the domain                */
     double point[2][3], axis[2][3];      /* m, in rest axes about the bodies' centres; of the domain from
                                             its lower corner                                            */
+    int slides;                          /* 1: the motor of a guide                                     */
     double lower, upper;                 /* rad: stops; both 0 = none                                   */
     double stiffness, rest, damping;     /* N m/rad, rad, N m s/rad, about the axis                     */
     double torque[3], before[3], damped[3];      /* N m on the body: of the spring, now and a step before,
-                                            and of the damper                                           */
+                                            and of the damper; of a guide's motor N                     */
     double start[4];                     /* how the body is turned against the other at the start       */
     double next_point[3], next_axis[3];  /* at the end of the step, of a body that is prescribed        */
     double impulse[6];                   /* N s, N m s at the joint: on the body, in this step          */
@@ -95,22 +97,25 @@ void tobi_constraint_end(const tobi_constraint *j, int side, const tobi_body *bo
                          double point[3], double axis[3]);
 /* joint_angle.c: of the body against the other since the start, rad, -pi to pi; next: at the next pose. */
 double tobi_constraint_angle(const tobi_constraint *j, const tobi_body *bodies, int next);
-/* How fast it grows, rad/s. */
+/* How fast it grows, rad/s, m/s. */
 double tobi_constraint_rate(const tobi_constraint *j, const tobi_body *bodies);
 /* -1, 1: at the lower or upper stop within rounding, in the present pose, or beyond it; else 0. */
 int tobi_constraint_at_stop(const tobi_constraint *j, double angle);
+/* Of a guide m, of others that angle. */
+double tobi_constraint_place(const tobi_constraint *j, const tobi_body *bodies, int next);
 /* Torques of springs and dampers at the present poses; those of the last call become `before`. */
 void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodies);
-/* Adds to the torque on a body: `now` of the springs, `before` of them a step ago, `damped` of dampers. */
+/* Adds to force and torque on a body: `now` of the springs, `before` of them a step ago, `damped` of
+   dampers. */
 void tobi_constraints_add_springs(const tobi_constraints *c, int body, double now, double before,
-                                  double damped, double torque[3]);
+                                  double damped, double force[3], double torque[3]);
 /* motor.c: where a step of dt begins, before W is taken. */
 void tobi_motors_begin(tobi_constraints *c, tobi_body *bodies, double dt);
 /* What a motor tries in it, with the mobility of its row. */
 void tobi_motor_aim(tobi_constraint *j, const tobi_body *bodies, double dt, double mobility);
-/* Adds to the torque on a body what motors at their bound, and those by torque, give in this step. */
-void tobi_motors_add_guess(const tobi_constraints *c, int body, double torque[3]);
-/* How far the next pose is from that, rad. */
+/* Adds to force and torque on a body what motors at their bound, and those by torque, give in this step. */
+void tobi_motors_add_guess(const tobi_constraints *c, int body, double load[6]);
+/* How far the next pose is from that, rad, m. */
 double tobi_motor_gap(const tobi_constraint *j, const tobi_body *bodies);
 /* Whether the hinge does what the motor was told when the step began. */
 int tobi_motor_follows(const tobi_constraint *j, const tobi_body *bodies);
@@ -121,7 +126,7 @@ void tobi_motor_bound(const tobi_constraints *c, const tobi_constraint *j, tobi_
 int tobi_motor_limit(tobi_constraints *c, int row);
 /* Whether a row that is none has an impulse within its bound, or wants one: then it is a row again. */
 int tobi_motor_engage(const tobi_constraints *c, tobi_constraint_row *row, double impulse);
-/* N m, and W that damper and motor take from the bodies, after a step of dt; 0: not known. */
+/* N m or N, and W that damper and motor take from the bodies, after a step of dt; 0: not known. */
 void tobi_motor_report(tobi_constraint *j, const tobi_body *bodies, double dt);
 
 /* s: a third of a radian of the fastest swing that springs and dampers make; INFINITY: none. */

@@ -23,9 +23,9 @@ static void take_known(tobi_constraints *c, const tobi_body *bodies, int touched
             impulse[a] = r->impulse[a] + (pulled ? dt*r->mass*r->pull[a] : 0);
             impulse[3 + a] = r->twist[a] + (pulled ? dt*r->pull_torque[a] : 0);
         }
-        double torque[3] = { 0 };
-        if (!driven) tobi_motors_add_guess(c, c->body[k], torque);
-        vec3_add_scaled(impulse + 3, impulse + 3, dt, torque);
+        double load[6] = { 0 };
+        if (!driven) tobi_motors_add_guess(c, c->body[k], load);
+        for (int a = 0; a < 6; a++) impulse[a] += dt*load[a];
         for (int i = 0; i < 6; i++)
             for (int j = 0; j < 6; j++) c->speed[k][i] += w[i][j]*impulse[j];
     }

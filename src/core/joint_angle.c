@@ -39,10 +39,20 @@ static void find_axis(const tobi_constraint *j, const tobi_body *bodies, double 
     for (int a = 0; a < 3; a++) axis[a] = vec3_dot(m[a], j->axis[0]);
 }
 
+double tobi_constraint_place(const tobi_constraint *j, const tobi_body *bodies, int next)
+{
+    const tobi_rigid *r = &bodies[j->body[0]].rigid;
+    double way[3];
+    if (!j->slides) return tobi_constraint_angle(j, bodies, next);
+    vec3_sub(way, next ? r->next_position : r->position, r->joint.point);
+    return vec3_dot(way, r->joint.axis);
+}
+
 double tobi_constraint_rate(const tobi_constraint *j, const tobi_body *bodies)
 {
     double axis[3], rate;
     find_axis(j, bodies, axis);
+    if (j->slides) return vec3_dot(axis, bodies[j->body[0]].rigid.velocity);
     rate = vec3_dot(axis, bodies[j->body[0]].rigid.angular_velocity);
     if (j->body[1] >= 0) rate -= vec3_dot(axis, bodies[j->body[1]].rigid.angular_velocity);
     return rate;
@@ -66,8 +76,8 @@ void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodie
         if (!acts(j)) continue;
         find_axis(j, bodies, axis);
         memcpy(j->before, j->torque, sizeof j->before);
-        const double turn = remainder(tobi_constraint_angle(j, bodies, 0) - j->rest, 2*acos(-1)),
-                     rate = tobi_constraint_rate(j, bodies);
+        const double angle = j->slides ? j->rest : tobi_constraint_angle(j, bodies, 0),
+                     turn = remainder(angle - j->rest, 2*acos(-1)), rate = tobi_constraint_rate(j, bodies);
         const double driven = j->motor.kind == TOBI_MOTOR_TORQUE ? j->motor.value : 0;
         for (int a = 0; a < 3; a++) {
             j->torque[a] = (driven - j->stiffness*turn)*axis[a];
@@ -77,15 +87,16 @@ void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodie
 }
 
 void tobi_constraints_add_springs(const tobi_constraints *c, int body, double now, double before,
-                                  double damped, double torque[3])
+                                  double damped, double force[3], double torque[3])
 {
     for (int k = 0; k < c->count; k++) {
         const tobi_constraint *j = &c->at[k];
         if (!acts(j) || (j->body[0] != body && j->body[1] != body)) continue;
         const double side = j->body[0] == body ? 1 : -1;
-        vec3_add_scaled(torque, torque, side*now, j->torque);
-        vec3_add_scaled(torque, torque, side*before, j->before);
-        vec3_add_scaled(torque, torque, side*damped, j->damped);
+        double *load = j->slides ? force : torque;
+        vec3_add_scaled(load, load, side*now, j->torque);
+        vec3_add_scaled(load, load, side*before, j->before);
+        vec3_add_scaled(load, load, side*damped, j->damped);
     }
 }
 

@@ -1,13 +1,14 @@
-/* Motors of hinges. One by speed or angle is a row about the axis, like a stop: its impulse in a step has a
-   bound of either sign, and beyond it the row is none. So it drives as strongly as it must, the pressure of a
-   liquid knows it, and nothing is to be remembered: whether it was obeyed, speed or angle show
-   (docs/decisions/0134-motors.md). Drawback: a liquid's pressure knows late that it meets it. */
+/* Motors of hinges and guides. One by speed or angle is a row about the axis, like a stop, of a guide one
+   along it: its impulse in a step has a bound of either sign, and beyond it the row is none. So it drives as
+   strongly as it must, the pressure of a liquid knows it, and nothing is to be remembered: whether it was
+   obeyed, speed or angle show (docs/decisions/0134-motors.md).
+   Drawback: a liquid's pressure knows late that it meets it. */
 #include "core/constraint.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <string.h>
 
-#define OBEYED 1e-7              /* rad, rad/s, or a share of the speed: it does what it is told          */
+#define OBEYED 1e-7              /* rad, rad/s, m, m/s or a share of the speed: it does what it is told   */
 #define ROUNDING 1e-12           /* of the bound                                                         */
 
 /* The stops of the hinge, with those of a body's own. */
@@ -21,11 +22,17 @@ static void find_stops(const tobi_constraint *j, const tobi_body *bodies, double
     *upper = INFINITY;
 }
 
+/* From one place of the hinge to another, the short way round. */
+static double find_difference(const tobi_constraint *j, double to, double from)
+{
+    return j->slides ? to - from : remainder(to - from, 2*acos(-1));
+}
+
 /* Which way it is to turn. */
 static double find_way(const tobi_constraint *j, double angle)
 {
     const tobi_motor *m = &j->motor;
-    return m->kind == TOBI_MOTOR_SPEED ? m->value : remainder(m->value - angle, 2*acos(-1));
+    return m->kind == TOBI_MOTOR_SPEED ? m->value : find_difference(j, m->value, angle);
 }
 
 void tobi_motors_begin(tobi_constraints *c, tobi_body *bodies, double dt)
@@ -36,7 +43,7 @@ void tobi_motors_begin(tobi_constraints *c, tobi_body *bodies, double dt)
         double lower, upper;
         j->rate_before = tobi_constraint_rate(j, bodies);
         if (j->kind != TOBI_BETWEEN_MOTOR || j->motor.kind == TOBI_MOTOR_TORQUE) continue;
-        const double angle = tobi_constraint_angle(j, bodies, 0), way = find_way(j, angle);
+        const double angle = tobi_constraint_place(j, bodies, 0), way = find_way(j, angle);
         find_stops(j, bodies, &lower, &upper);
         bodies[j->body[0]].rigid.joint.pulled = way < 0 ? angle > lower : way > 0 && angle < upper;
     }
@@ -48,7 +55,7 @@ static double find_rate(const tobi_constraint *j, double angle, double dt, doubl
     const tobi_motor *m = &j->motor;
     if (m->kind == TOBI_MOTOR_SPEED) return m->value;
     if (isinf(m->most)) return find_way(j, angle)/dt;
-    const double lag = remainder(m->before - angle, 2*acos(-1));
+    const double lag = find_difference(j, m->before, angle);
     const double brake = sqrt(m->most*fmax(mobility, 0)*fabs(lag));
     return (m->value - m->before)/dt + copysign(fmin(fabs(lag)/dt, brake), lag);
 }
@@ -64,7 +71,7 @@ void tobi_motor_aim(tobi_constraint *j, const tobi_body *bodies, double dt, doub
         vec3_add_scaled(m->guess, m->guess, 0.5*(m->before + m->value), axis);
         return;
     }
-    const double angle = tobi_constraint_angle(j, bodies, 0);
+    const double angle = tobi_constraint_place(j, bodies, 0);
     find_stops(j, bodies, &lower, &upper);
     m->goal = fmin(fmax(angle + dt*find_rate(j, angle, dt, mobility), lower), upper);
     m->rate = (m->goal - angle)/dt;
@@ -72,25 +79,26 @@ void tobi_motor_aim(tobi_constraint *j, const tobi_body *bodies, double dt, doub
     vec3_add_scaled(m->guess, m->guess, copysign(m->most, m->rate - j->rate_before), axis);
 }
 
-void tobi_motors_add_guess(const tobi_constraints *c, int body, double torque[3])
+void tobi_motors_add_guess(const tobi_constraints *c, int body, double load[6])
 {
     for (int k = 0; k < c->count; k++) {
         const tobi_constraint *j = &c->at[k];
         if (!j->motor.kind || (j->body[0] != body && j->body[1] != body)) continue;
-        vec3_add_scaled(torque, torque, j->body[0] == body ? 1 : -1, j->motor.guess);
+        double *at = load + (j->slides ? 0 : 3);
+        vec3_add_scaled(at, at, j->body[0] == body ? 1 : -1, j->motor.guess);
     }
 }
 
 double tobi_motor_gap(const tobi_constraint *j, const tobi_body *bodies)
 {
-    return remainder(j->motor.goal - tobi_constraint_angle(j, bodies, 1), 2*acos(-1));
+    return find_difference(j, j->motor.goal, tobi_constraint_place(j, bodies, 1));
 }
 
 int tobi_motor_follows(const tobi_constraint *j, const tobi_body *bodies)
 {
     const tobi_motor *m = &j->motor;
     if (m->kind == TOBI_MOTOR_ANGLE)
-        return fabs(remainder(m->before - tobi_constraint_angle(j, bodies, 0), 2*acos(-1))) <= OBEYED;
+        return fabs(find_difference(j, m->before, tobi_constraint_place(j, bodies, 0))) <= OBEYED;
     return fabs(m->before - tobi_constraint_rate(j, bodies)) <= OBEYED*(1 + fabs(m->before));
 }
 
@@ -120,7 +128,8 @@ int tobi_motor_engage(const tobi_constraints *c, tobi_constraint_row *row, doubl
         double error = row->pace;
         for (int side = 0; side < 2; side++)
             if (row->slot[side] >= 0)
-                error += vec3_dot(row->jacobian[side] + 3, c->speed[row->slot[side]] + 3);
+                error += vec3_dot(row->jacobian[side], c->speed[row->slot[side]]) +
+                         vec3_dot(row->jacobian[side] + 3, c->speed[row->slot[side]] + 3);
         if (!(error*sum > 0)) return 0;
     }
     row->active = 1;
@@ -135,7 +144,8 @@ void tobi_motor_report(tobi_constraint *j, const tobi_body *bodies, double dt)
     m->last = m->value;
     if (m->kind == TOBI_MOTOR_TORQUE) torque = 0.5*(m->before + m->value);
     else if (m->kind) torque = m->impulse/dt;
-    j->info.motor_torque = dt > 0 ? torque : 0;
+    j->info.motor_torque = dt > 0 && !j->slides ? torque : 0;
+    j->info.motor_force = dt > 0 && j->slides ? torque : 0;
     const double damped = j->damping*(before*before + before*now + now*now)/3;
     j->info.power = dt > 0 ? damped - 0.5*torque*(before + now) : 0;
 }

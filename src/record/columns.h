@@ -167,5 +167,6 @@
     V("gap", "m", i.gap, "Distance of the two points that the joint holds together.") \
     V("motor_torque", "N m", i.motor_torque, \
       "Torque of its motor about the axis on its body, where it has one.") \
+    V("motor_force", "N", i.motor_force, "The same of a guide: its force along the axis.") \
     V("power", "W", i.power, \
       "Taken from the bodies by damper and motor, where it has any; below 0 the motor drives.")

@@ -17,7 +17,8 @@ enum { VALUES = sizeof values/sizeof *values };
 /* In 2-D a joint has no force along z, and a moment about z alone. Motors and dampers some have. */
 static int is_told(const tobi_run *run, const tobi_joint_info *i, int value)
 {
-    if (strcmp(values[value].name, "motor_torque") == 0) return i->has_motor;
+    if (strcmp(values[value].name, "motor_torque") == 0) return i->has_motor && !i->slides;
+    if (strcmp(values[value].name, "motor_force") == 0) return i->has_motor && i->slides;
     if (strcmp(values[value].name, "power") == 0) return i->has_power;
     return !values[value].solid || run->world->sim.def.dimension == 3;
 }

@@ -8,16 +8,17 @@
 
 static const double DEGREE = 3.14159265358979323846/180;
 
-/* A hinge of the body, with its motor or NULL. */
+/* A hinge or guide of the body, with its motor or NULL. */
 static void add_joint(tobi_control_input *in, tobi_motor **motors, tobi_motor *motor, const char *name,
-                      double angle, double rate)
+                      int slides, double place, double rate)
 {
+    const double unit = slides ? 1 : DEGREE;
     if (in->joint_count == TOBI_CONTROL_JOINTS) return;
     motors[in->joint_count] = motor;
-    in->joints[in->joint_count++] = (tobi_control_joint){ name, angle/DEGREE, rate/DEGREE };
+    in->joints[in->joint_count++] = (tobi_control_joint){ name, { place/unit }, rate/unit, slides };
 }
 
-/* The joints between bodies that hold it, then its own hinge. */
+/* The joints between bodies that hold it, then its own. */
 static void list_joints(const tobi_dynamics_state *d, const tobi_body *b, tobi_control_input *in,
                         tobi_motor **motors)
 {
@@ -30,10 +31,12 @@ static void list_joints(const tobi_dynamics_state *d, const tobi_body *b, tobi_c
         if (j->body[0] != body && j->body[1] != body) continue;
         if (j->kind == TOBI_BETWEEN_MOTOR) motor = &j->motor;
         else if (j->kind == TOBI_BETWEEN_HINGE || (c->dimension == 2 && j->kind == TOBI_BETWEEN_BALL))
-            add_joint(in, motors, &j->motor, j->name, tobi_constraint_angle(j, d->bodies, 0), j->rate_before);
+            add_joint(in, motors, &j->motor, j->name, 0, tobi_constraint_angle(j, d->bodies, 0),
+                      j->rate_before);
     }
-    if (own->kind != TOBI_JOINT_HINGE) return;
-    add_joint(in, motors, motor, b->name, tobi_joint_position(&b->rigid), tobi_joint_rate(&b->rigid));
+    if (!own->kind) return;
+    add_joint(in, motors, motor, b->name, own->kind == TOBI_JOINT_GUIDE, tobi_joint_position(&b->rigid),
+              tobi_joint_rate(&b->rigid));
 }
 
 /* What the program tells motors, from the next step on. */
@@ -44,12 +47,14 @@ static tobi_status set_motors(const tobi_body *b, const tobi_control_input *in,
         if (out->motor[k] == TOBI_NOT_GIVEN) continue;
         if (!motors[k] || motors[k]->kind == TOBI_MOTOR_NONE)
             return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program tells the motor of '%s', "
-                             "which has none; a hinge has one by the key motor", b->name, in->joints[k].name);
+                             "which has none; a %s has one by the key motor", b->name, in->joints[k].name,
+                             in->joints[k].slides ? "guide" : "hinge");
         if (!(fabs(out->motor[k]) <= 1e8))
             return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program tells the motor of '%s' %g; "
                              "allowed is -1e8 to 1e8", b->name, in->joints[k].name, out->motor[k]);
         motors[k]->is_set = 1;
-        motors[k]->set = out->motor[k]*(motors[k]->kind == TOBI_MOTOR_TORQUE ? 1 : DEGREE);
+        const int plain = motors[k]->kind == TOBI_MOTOR_TORQUE || in->joints[k].slides;
+        motors[k]->set = out->motor[k]*(plain ? 1 : DEGREE);
     }
     return TOBI_OK;
 }

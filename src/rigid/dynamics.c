@@ -64,7 +64,7 @@ static void add_loads(const tobi_dynamics_state *d, int body, tobi_line_when whe
     const double now = when == TOBI_LINES_NOW ? 1 : when == TOBI_LINES_MEAN ? 0.5 : 0;
     tobi_lines_add(d->world.lines, d->world.line_count, body, when, load);
     tobi_constraints_add_springs(d->world.constraints, body, now, when == TOBI_LINES_MEAN ? 0.5 : 0,
-                                 when != TOBI_LINES_NOW, load->torque);
+                                 when != TOBI_LINES_NOW, load->force, load->torque);
 }
 
 /* Of a body with a joint: along its one coordinate. */

@@ -17,18 +17,20 @@
 enum { MOST_ROWS = 20000000, MOST_COLUMNS = 64, FILE_LIMIT = 1 << 30 /* bytes */ };
 
 typedef enum column {
-    TIME, X, Y, Z, QW, QX, QY, QZ, AX, AY, AZ, ANGLE, ROLL, PITCH, YAW, SPEED, RATE, TORQUE, COLUMNS
+    TIME, X, Y, Z, QW, QX, QY, QZ, AX, AY, AZ, ANGLE, ROLL, PITCH, YAW, SPEED, RATE, TORQUE,
+    POSITION, FORCE, COLUMNS
 } column;
 
 static const char *const column_names[COLUMNS] = {"time", "x",  "y",  "z",     "qw",   "qx",    "qy", "qz",
                                                   "ax",   "ay", "az", "angle", "roll", "pitch", "yaw",
-                                                  "speed", "flow_rate", "torque"};
+                                                  "speed", "flow_rate", "torque", "position", "force"};
 
 /* The units that a column's name may bring along, as in "x [m]". */
 static const char *const length_units[] = {"m", NULL}, *const time_units[] = {"s", NULL};
 static const char *const pull_units[] = {"m/s2", NULL};
 static const char *const speed_units[] = {"m/s", NULL}, *const rate_units[] = {"m3/s", "m2/s", NULL};
 static const char *const turn_units[] = {"degrees/s", "deg/s", NULL}, *const torque_units[] = {"N m", NULL};
+static const char *const force_units[] = {"N", NULL};
 static const char *const plain_units[] = {"1", NULL}, *const angle_units[] = {"degrees", "deg", NULL};
 
 typedef struct keyframe {
@@ -43,6 +45,7 @@ struct tobi_keyframes {
 
 typedef struct reader {
     const char *what, *path;            /* "keyframes", "gravity", "flow" or "motor"   */
+    int slides;                         /* 1: the motor of a guide                     */
     int64_t line;
     const char *separators;             /* those that the header may have, then the one that it has */
     int meaning[MOST_COLUMNS];          /* column of each field of a line              */
@@ -104,6 +107,7 @@ static int is_motor(const reader *r) { return strcmp(r->what, "motor") == 0; }
 /* Whether tables of this kind may have the column. */
 static int is_allowed(const reader *r, int c)
 {
+    if (is_motor(r) && r->slides) return c == TIME || c == POSITION || c == SPEED || c == FORCE;
     if (is_motor(r)) return c == TIME || c == ANGLE || c == SPEED || c == TORQUE;
     return c < SPEED || (is_flow(r) && c < TORQUE);
 }
@@ -118,6 +122,12 @@ static tobi_status check_flow_columns(const reader *r, tobi_error *err)
     return TOBI_OK;
 }
 
+static const char *motor_columns(const reader *r)
+{
+    return r->slides ? "position (m), speed (m/s) and force (N), as it is of a guide"
+                     : "angle (degrees), speed (degrees/s) and torque (N m)";
+}
+
 static tobi_status check_columns(const reader *r, tobi_error *err)
 {
     const int *g = r->given;
@@ -125,10 +135,9 @@ static tobi_status check_columns(const reader *r, tobi_error *err)
     int angles = g[ROLL] + g[PITCH] + g[YAW];
     if (!g[TIME]) return fail_here(r, err, "there is no column \"time\"", "");
     if (is_flow(r)) return check_flow_columns(r, err);
-    if (is_motor(r) && g[ANGLE] + g[SPEED] + g[TORQUE] == 1) return TOBI_OK;
+    if (is_motor(r) && g[ANGLE] + g[POSITION] + g[SPEED] + g[TORQUE] + g[FORCE] == 1) return TOBI_OK;
     if (is_motor(r))
-        return fail_here(r, err, "a motor has the columns time (s) and one of angle (degrees), speed "
-                         "(degrees/s) and torque (N m)", "");
+        return fail_here(r, err, "a motor has the columns time (s) and one of ", motor_columns(r));
     if (is_gravity(r) && quaternion + axis + angles)
         return fail_here(r, err, "gravity does not turn: allowed are time (s), x, y and z (m/s2)", "");
     if ((quaternion && quaternion < 4) || (axis && axis < 4))
@@ -144,9 +153,11 @@ static tobi_status check_columns(const reader *r, tobi_error *err)
 static const char *const *column_units(const reader *r, column c)
 {
     if (c == TIME) return time_units;
-    if (c >= SPEED)
-        return c == TORQUE ? torque_units : c == RATE ? rate_units : is_motor(r) ? turn_units : speed_units;
-    if (c <= Z) return is_gravity(r) ? pull_units : length_units;
+    if (c == FORCE) return force_units;
+    if (c >= SPEED && c < POSITION)
+        return c == TORQUE ? torque_units : c == RATE ? rate_units : is_motor(r) && !r->slides ? turn_units
+                                                                                               : speed_units;
+    if (c <= Z || c == POSITION) return is_gravity(r) ? pull_units : length_units;
     return c < ANGLE ? plain_units : angle_units;
 }
 
@@ -190,12 +201,12 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
             if (is_allowed(r, c) && strcasecmp(field, column_names[c]) == 0) found = c;
         if (found == COLUMNS)
             return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: there is no column \"%s\"; allowed are "
-                             "time (s)%s", r->what, r->path, (long long)r->line, tobi_excerpt(field).text,
+                             "time (s)%s%s", r->what, r->path, (long long)r->line, tobi_excerpt(field).text,
                              is_flow(r) ? ", speed (m/s) and flow_rate (m3/s)"
-                             : is_motor(r) ? " and one of angle (degrees), speed (degrees/s), torque (N m)"
+                             : is_motor(r) ? " and one of "
                              : is_gravity(r) ? ", x, y, z (m/s2)"
                              : ", x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, pitch, yaw "
-                               "(degrees)");
+                               "(degrees)", is_motor(r) ? motor_columns(r) : "");
         if (unit) TOBI_TRY(check_unit(r, unit, closing, found, err));
         if (r->given[found]++) return fail_here(r, err, "a column comes twice: ", column_names[found]);
         r->meaning[r->fields++] = found;      /* no more than COLUMNS, since none comes twice */
@@ -285,7 +296,8 @@ static tobi_status add_row(tobi_keyframes *f, int64_t *room, const reader *r, ch
     row.time = value[TIME];
     memcpy(row.shift, value + X, sizeof row.shift);
     if (is_flow(r)) row.shift[0] = value[SPEED] + value[RATE];
-    if (is_motor(r)) row.shift[0] = value[ANGLE] + value[SPEED] + value[TORQUE];
+    if (is_motor(r))
+        row.shift[0] = value[ANGLE] + value[POSITION] + value[SPEED] + value[TORQUE] + value[FORCE];
     if (is_flow(r) && row.shift[0] < 0)
         return fail_here(r, err, "the flow is below 0: an inlet lets nothing out", "");
     TOBI_TRY(read_turn(r, value, row.turn, err));
@@ -457,11 +469,12 @@ tobi_status tobi_keyframes_load_flow(const char *path, int *is_rate, tobi_keyfra
     return TOBI_OK;
 }
 
-tobi_status tobi_keyframes_load_motor(const char *path, int *column, tobi_keyframes **out, tobi_error *err)
+tobi_status tobi_keyframes_load_motor(const char *path, int slides, int *column, tobi_keyframes **out,
+                                      tobi_error *err)
 {
-    reader r = {.what = "motor", .path = path};
+    reader r = {.what = "motor", .path = path, .slides = slides};
     TOBI_TRY(load(&r, out, err));
-    *column = r.given[SPEED] ? 0 : r.given[ANGLE] ? 1 : 2;
+    *column = r.given[SPEED] ? 0 : r.given[ANGLE] || r.given[POSITION] ? 1 : 2;
     return TOBI_OK;
 }
 

@@ -32,9 +32,11 @@ tobi_status tobi_keyframes_load_gravity(const char *path, int given[3], tobi_key
 /* The same for an inlet: columns time (s) and one of speed (m/s) and flow_rate (m3/s), neither below 0, whose
    value is the "shift" along x. is_rate: which it is. */
 tobi_status tobi_keyframes_load_flow(const char *path, int *is_rate, tobi_keyframes **out, tobi_error *err);
-/* The same for a motor: columns time (s) and one of speed (degrees/s), angle (degrees) and torque (N m),
-   whose value is the "shift" along x. column: 0, 1, 2, which it is. */
-tobi_status tobi_keyframes_load_motor(const char *path, int *column, tobi_keyframes **out, tobi_error *err);
+/* The same for a motor: columns time (s) and one of speed (degrees/s), angle (degrees) and torque (N m), of a
+   guide (slides 1) of speed (m/s), position (m) and force (N), whose value is the "shift" along x. column: 0,
+   1, 2, which it is. */
+tobi_status tobi_keyframes_load_motor(const char *path, int slides, int *column, tobi_keyframes **out,
+                                      tobi_error *err);
 /* Rows, and the time (s) and shift of one. */
 int64_t tobi_keyframes_count(const tobi_keyframes *frames);
 double tobi_keyframes_row(const tobi_keyframes *frames, int64_t row, double shift[3]);

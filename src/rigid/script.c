@@ -359,7 +359,7 @@ tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_c
     TOBI_NEED(user, "the script");
     TOBI_NEED(in && out, "the input or the output");
     tobi_script *s = user;
-    enum { JOINTS = 33 + TOBI_CONTROL_STATE, FROM = JOINTS + 2*TOBI_CONTROL_JOINTS,
+    enum { JOINTS = 33 + TOBI_CONTROL_STATE, FROM = JOINTS + 3*TOBI_CONTROL_JOINTS,
            MOTORS = 10 + TOBI_CONTROL_STATE, INTO = MOTORS + TOBI_CONTROL_JOINTS };
     double from[FROM] = { in->time }, into[INTO] = { 0, 0, 0, 0, 0, 0, in->phase };
     memcpy(from + 1, in->position, 3*sizeof *from);
@@ -379,8 +379,9 @@ tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_c
     memcpy(into + 10, in->state, sizeof in->state);
     const int joints = in->joint_count < TOBI_CONTROL_JOINTS ? in->joint_count : TOBI_CONTROL_JOINTS;
     for (int k = 0; k < joints; k++) {
-        from[JOINTS + 2*k] = in->joints[k].angle;
-        from[JOINTS + 2*k + 1] = in->joints[k].speed;
+        from[JOINTS + 3*k] = in->joints[k].angle;
+        from[JOINTS + 3*k + 1] = in->joints[k].speed;
+        from[JOINTS + 3*k + 2] = in->joints[k].slides;
         snprintf(s->channel->joint[k], sizeof s->channel->joint[k], "%s", in->joints[k].name);
     }
     for (int k = 0; k < TOBI_CONTROL_JOINTS; k++) into[MOTORS + k] = TOBI_NOT_GIVEN;

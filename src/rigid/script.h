@@ -30,7 +30,8 @@
    then what the script answered last. These three are the only memory a script may have, since a restart
    begins with them; globals cannot be assigned after loading, tables and locals outside control are not
    watched. hold names the axes that stand still in this step, like `locked` of a body. body.joints.NAME has
-   angle (degrees) and speed (degrees/s) of each hinge of the body, motor tells its motor what to do.
+   angle (degrees) and speed (degrees/s) of each hinge of the body, position (m) and speed (m/s) of its guide;
+   motor tells its motor what to do.
 
    A flow script defines
 

@@ -151,7 +151,7 @@ static const char DRIVER[] =
     "        into[9 + k] = number\n"
     "    end\n"
     "end\n"
-    /* joints = { NAME = { angle, speed } }; a misspelt name is told. */
+    /* joints = { NAME = { angle, speed } }, of a guide { position, speed }; a misspelt name is told. */
     "local missing = { __index = function(t, k)\n"
     "    local names = {}\n"
     "    for name in next, t do names[#names + 1] = name end\n"
@@ -162,7 +162,8 @@ static const char DRIVER[] =
     "local function list(names, from)\n"
     "    local joints = {}\n"
     "    for k = 1, #names do\n"
-    "        joints[names[k]] = { angle = from[47 + 2 * k], speed = from[48 + 2 * k] }\n"
+    "        local place = from[48 + 3 * k] == 1 and 'position' or 'angle'\n"
+    "        joints[names[k]] = { [place] = from[46 + 3 * k], speed = from[47 + 3 * k] }\n"
     "    end\n"
     "    return setmetatable(joints, missing)\n"
     "end\n"

@@ -67,7 +67,7 @@ static void check_motor(const tobi_scene *scene, tobi_source *source, const tobi
     tobi_place motor = { entry, "motor", 0 };
     if (!turns && tobi_motor_is_given(&joint->motor))
         tobi_source_mistake_at_key(source, &motor, "is of a hinge, a %s joint has none", kinds[joint->kind]);
-    else tobi_joints_check_motor(source, &joint->motor, &motor);
+    else tobi_joints_check_motor(source, &joint->motor, 0, &motor);
 }
 
 static void check_hinge(const tobi_scene *scene, tobi_source *source, const tobi_joint_def *joint,

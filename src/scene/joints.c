@@ -29,10 +29,11 @@ static void check_stops(tobi_source *source, const tobi_place *joint, double low
         tobi_source_mistake(source, &high, "is %.10g, must be 0 or above: the body starts at 0", upper);
 }
 
-void tobi_joints_check_motor(tobi_source *source, const tobi_motor_def *def, const tobi_place *motor)
+void tobi_joints_check_motor(tobi_source *source, const tobi_motor_def *def, int slides,
+                             const tobi_place *motor)
 {
     tobi_error why = { 0 };
-    if (tobi_motor_check(def, &why) == TOBI_OK) return;
+    if (tobi_motor_check(def, slides, &why) == TOBI_OK) return;
     tobi_place key = { motor, why.key, 0 };
     if (why.key[0]) tobi_source_mistake_at_key(source, &key, "%s", why.text);
     else tobi_source_mistake(source, motor, "%s", why.text);
@@ -48,7 +49,7 @@ static void check_hinge(const tobi_scene *scene, tobi_source *source, const tobi
         tobi_source_mistake(source, &axis, "must be along z in a 2-D scene");
     check_stops(source, hinge, def->hinge_lower, def->hinge_upper);
     tobi_place motor = { hinge, "motor", 0 };
-    tobi_joints_check_motor(source, &def->hinge_motor, &motor);
+    tobi_joints_check_motor(source, &def->hinge_motor, 0, &motor);
 }
 
 static void check_guide(const tobi_scene *scene, tobi_source *source, const tobi_body_def *def,
@@ -59,6 +60,8 @@ static void check_guide(const tobi_scene *scene, tobi_source *source, const tobi
     if (scene->world.dimension == 2 && def->guide_axis[2] != 0)
         tobi_source_mistake(source, &axis, "is %.10g in z, must be 0 in a 2-D scene", def->guide_axis[2]);
     check_stops(source, guide, def->guide_lower, def->guide_upper);
+    tobi_place motor = { guide, "motor", 0 };
+    tobi_joints_check_motor(source, &def->guide_motor, 1, &motor);
 }
 
 void tobi_joints_check(const tobi_scene *scene, tobi_source *source, int body, const tobi_place *entry)

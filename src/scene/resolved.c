@@ -77,6 +77,8 @@ static json_t *write_body(const tobi_scene *scene, const tobi_scene_body *body)
     drop_shapes(&body->def, object);
     if (!tobi_motor_is_given(&body->def.hinge_motor))
         json_object_del(json_object_get(object, "hinge"), "motor");
+    if (!tobi_motor_is_given(&body->def.guide_motor))
+        json_object_del(json_object_get(object, "guide"), "motor");
     if (is_zero(body->def.hinge_axis)) json_object_del(object, "hinge");
     if (is_zero(body->def.guide_axis)) json_object_del(object, "guide");
     if (body->motion_def[0].table)

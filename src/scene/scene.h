@@ -111,7 +111,8 @@ json_t *tobi_joint_list_write_json(const tobi_scene *scene);
 /* joints.c: the hinge of a 2-D body has its axis along z; what is wrong with hinge and guide of a body. */
 void tobi_joints_complete(const json_t *body, int dimension, tobi_body_def *def);
 void tobi_joints_check(const tobi_scene *scene, tobi_source *source, int body, const tobi_place *entry);
-void tobi_joints_check_motor(tobi_source *source, const tobi_motor_def *def, const tobi_place *motor);
+void tobi_joints_check_motor(tobi_source *source, const tobi_motor_def *def, int slides,
+                             const tobi_place *motor);
 
 /* interfaces.c: the key interfaces of the scene, which is `of`; tobi_interfaces_write: 1 without memory. */
 tobi_status tobi_interfaces_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);

@@ -143,7 +143,7 @@ tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_
     tobi_constraint *more = realloc(c->at, (size_t)(c->count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a joint");
     c->at = more;
-    TOBI_TRY(tobi_motors_add(w, &def->motor, "motor", c->count, -1, err));
+    TOBI_TRY(tobi_motors_add(w, &def->motor, "motor", 0, c->count, -1, err));
     c->at[c->count++] = j;
     return TOBI_OK;
 }
@@ -164,8 +164,10 @@ static const char *find_own(const tobi_world *w, int number, tobi_joint_info *in
         if (info) *info = b->rigid.joint.info;
         const tobi_constraint *motor = tobi_motors_of_body(w, k);
         if (info && motor) info->motor_torque = motor->info.motor_torque;
+        if (info && motor) info->motor_force = motor->info.motor_force;
         if (info && motor) info->power += motor->info.power;
         if (info) info->has_motor = motor != NULL;
+        if (info) info->slides = b->rigid.joint.kind == TOBI_JOINT_GUIDE;
         if (info) info->has_power = motor || b->rigid.joint.damping > 0;
         return b->name;
     }

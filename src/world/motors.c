@@ -1,6 +1,6 @@
-/* Motors of hinges: what they are told is a function of time, a constant, a swing or rows of a file, so that
-   restarts know it. A constant that grows is a swing of frequency 0 and phase 90 degrees. Drawback: a motor
-   of a body's own hinge is a constraint beside the hinge. */
+/* Motors of hinges and guides: what they are told is a function of time, a constant, a swing or rows of a
+   file, so that restarts know it. A constant that grows is a swing of frequency 0 and phase 90 degrees.
+   Drawback: a motor of a body's own joint is a constraint beside it. */
 #include "world/motors.h"
 #include "base/error.h"
 #include "base/param.h"
@@ -12,12 +12,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FOR_OTHERS "torque_max is for a motor by speed or angle; this one has a torque"
+/* The words of a hinge and of a guide. */
+static const struct { const char *joint, *place, *unit, *load, *most, *has; } words[] = {
+    { "hinge", "angle", "degrees", "torque", "torque_max",
+      "hinge that it turns; a hinge has point and axis" },
+    { "guide", "position", "m", "force", "force_max",
+      "guide that it moves it along; a guide has an axis" } };
 
 struct tobi_motor_source {
     int joint, body;             /* as of tobi_motors_add; from the start on `joint` is a constraint      */
+    int slides;                  /* 1: of a guide                                                       */
     int kind;                    /* tobi_motor_kind                                                     */
-    double most;                 /* N m                                                                 */
+    double most;                 /* N m, N                                                              */
     tobi_keyframes *rows;        /* NULL: no file                                                       */
     tobi_motion *motion;         /* its shift along x is the value; NULL: 0, or a file                  */
 };
@@ -41,12 +47,21 @@ static tobi_status refuse(tobi_error *err, const char *key, const char *what)
     return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "%s", what), "%s", key);
 }
 
-static tobi_status check_keys(const tobi_motor_def *d, tobi_error *err)
+static tobi_status refuse_most(const tobi_motor_def *d, int slides, tobi_error *err)
 {
+    const char *most = words[slides].most;
+    if (!(d->torque_max > 0)) return TOBI_OK;
+    return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "%s is for a motor by speed or %s; this one has a "
+                                      "%s", most, words[slides].place, words[slides].load), "%s", most);
+}
+
+static tobi_status check_keys(const tobi_motor_def *d, int slides, tobi_error *err)
+{
+    const char *load = words[slides].load, *most = words[slides].most;
     const int count = is_number(d->speed) + is_number(d->angle) + is_number(d->torque) + (d->file != NULL);
     if (count != 1)
-        return tobi_fail(err, TOBI_INVALID, "a motor has one of speed, angle, torque and file; this one has "
-                         "%s", count ? "several" : "none");
+        return tobi_fail(err, TOBI_INVALID, "a motor has one of speed, %s, %s and file; this one has %s",
+                         words[slides].place, load, count ? "several" : "none");
     if (d->file && (d->amplitude != 0 || d->period != 0 || d->phase != 0 || d->start != 0 || d->ramp != 0))
         return refuse(err, "file", "a motor with a file has no amplitude, period, phase, start and ramp: the "
                       "file says all");
@@ -54,11 +69,9 @@ static tobi_status check_keys(const tobi_motor_def *d, tobi_error *err)
         return refuse(err, d->period > 0 ? "period" : "amplitude", "a motor that swings has an amplitude and "
                                                                    "a period; this one has one of them");
     if (!(d->torque_max >= 0))
-        return refuse(err, "torque_max", "the largest torque of a motor is below 0; allowed is above 0, or 0 "
-                                         "for no bound");
-    if (is_number(d->torque) && d->torque_max > 0)
-        return refuse(err, "torque_max", FOR_OTHERS);
-    return TOBI_OK;
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "the largest %s of a motor is below 0; allowed "
+                                          "is above 0, or 0 for no bound", load), "%s", most);
+    return is_number(d->torque) ? refuse_most(d, slides, err) : TOBI_OK;
 }
 
 /* Adds a swing to the parts, if it is one. */
@@ -100,39 +113,41 @@ static tobi_status find_value(const tobi_motor_source *m, double t, double *valu
     return TOBI_OK;
 }
 
-/* An angle that is not where the hinge begins would be reached in one step. */
+/* A place that is not where the hinge begins would be reached in one step. */
 static tobi_status check_start(const tobi_motor_source *m, tobi_error *err)
 {
     double start;
     TOBI_TRY(find_value(m, 0, &start, err));
     if (m->kind != TOBI_MOTOR_ANGLE || !isinf(m->most) || start == 0) return TOBI_OK;
-    return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "the motor asks for %.10g degrees at time 0, where "
-                                      "the hinge is at 0; allowed are 0, or a ramp or torque_max in which it "
-                                      "gets there", start), m->rows ? "file" : "angle");
+    return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "the motor asks for %.10g %s at time 0, where the "
+                                      "%s is at 0; allowed are 0, or a ramp or %s in which it gets there",
+                                      start, words[m->slides].unit, words[m->slides].joint,
+                                      words[m->slides].most),
+                       "%s", m->rows ? "file" : words[m->slides].place);
 }
 
-/* On failure nothing is left of it. */
+/* With `slides` given. On failure nothing is left of it. */
 static tobi_status make_source(const tobi_motor_def *d, tobi_motor_source *m, tobi_error *err)
 {
     int column = is_number(d->speed) ? 0 : is_number(d->angle) ? 1 : 2;
     const double constant[] = { d->speed, d->angle, d->torque };
-    TOBI_TRY(check_keys(d, err));
+    TOBI_TRY(check_keys(d, m->slides, err));
     tobi_status status = TOBI_OK;
     if (d->file)
-        status = tobi_at_key(err, tobi_keyframes_load_motor(d->file, &column, &m->rows, err), "file");
+        status = tobi_at_key(err, tobi_keyframes_load_motor(d->file, m->slides, &column, &m->rows, err),
+                             "file");
     else status = make_value(d, constant[column], &m->motion, err);
     m->kind = TOBI_MOTOR_SPEED + column;
     m->most = d->torque_max > 0 ? d->torque_max : INFINITY;
-    if (status == TOBI_OK && d->file && m->kind == TOBI_MOTOR_TORQUE && d->torque_max > 0)
-        status = refuse(err, "torque_max", FOR_OTHERS);
+    if (status == TOBI_OK && m->kind == TOBI_MOTOR_TORQUE) status = refuse_most(d, m->slides, err);
     if (status == TOBI_OK) status = check_start(m, err);
     if (status != TOBI_OK) free_source(m);
     return status;
 }
 
-tobi_status tobi_motor_check(const tobi_motor_def *def, tobi_error *err)
+tobi_status tobi_motor_check(const tobi_motor_def *def, int slides, tobi_error *err)
 {
-    tobi_motor_source m = { 0 };
+    tobi_motor_source m = { .slides = slides != 0 };
     TOBI_NEED(def, "the definition");
     if (!tobi_motor_is_given(def)) return TOBI_OK;
     TOBI_TRY(make_source(def, &m, err));
@@ -152,15 +167,15 @@ static tobi_status place_error(tobi_error *err, tobi_status status, const char *
     return tobi_at_key(err, status, "%s%s%.24s", key, inner[0] ? "." : "", inner);
 }
 
-tobi_status tobi_motors_add(tobi_world *w, const tobi_motor_def *def, const char *key, int joint, int body,
-                            tobi_error *err)
+tobi_status tobi_motors_add(tobi_world *w, const tobi_motor_def *def, const char *key, int slides, int joint,
+                            int body, tobi_error *err)
 {
-    tobi_motor_source m = { .joint = joint, .body = body };
+    tobi_motor_source m = { .joint = joint, .body = body, .slides = slides };
     if (!tobi_motor_is_given(def)) return TOBI_OK;
     const tobi_body *b = joint < 0 ? &w->sim.bodies[body] : NULL;
-    if (b && b->rigid.joint.kind != TOBI_JOINT_HINGE)
-        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s' has a motor and no hinge that it "
-                                          "turns; a hinge has point and axis", b->name), "%s", key);
+    if (b && b->rigid.joint.kind != (slides ? TOBI_JOINT_GUIDE : TOBI_JOINT_HINGE))
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s' has a motor and no %s", b->name,
+                                          words[slides].has), "%s", key);
     TOBI_TRY(place_error(err, make_source(def, &m, err), key));
     tobi_motor_source *more = realloc(w->motors, (size_t)(w->motor_count + 1)*sizeof *more);
     if (!more) {
@@ -194,12 +209,13 @@ const tobi_constraint *tobi_motors_of_body(const tobi_world *w, int body)
     return NULL;
 }
 
-/* About the axis that the body's hinge has, as the body holds it. */
+/* About the axis that the body's joint has, as the body holds it, or along it. */
 static void make_own(const tobi_world *w, int body, tobi_constraint *j)
 {
     const tobi_rigid *r = &w->sim.bodies[body].rigid;
     double turn[3][3];
-    *j = (tobi_constraint){ .kind = TOBI_BETWEEN_MOTOR, .body = { body, -1 } };
+    *j = (tobi_constraint){ .kind = TOBI_BETWEEN_MOTOR, .body = { body, -1 },
+                            .slides = r->joint.kind == TOBI_JOINT_GUIDE };
     snprintf(j->name, sizeof j->name, "%s", w->sim.bodies[body].name);
     tobi_quaternion_matrix(r->orientation, turn);
     memcpy(j->axis[1], r->joint.axis, sizeof j->axis[1]);
@@ -231,7 +247,7 @@ tobi_status tobi_motors_tell(tobi_world *w, double t, double dt, tobi_error *err
     for (int k = 0; k < w->motor_count; k++) {
         tobi_motor_source *m = &w->motors[k];
         tobi_motor *motor = &w->sim.constraints.at[m->joint].motor;
-        const double unit = m->kind == TOBI_MOTOR_TORQUE ? 1 : degree;
+        const double unit = m->slides || m->kind == TOBI_MOTOR_TORQUE ? 1 : degree;
         double before, value;
         if (motor->is_set) {                     /* by a control program */
             motor->before = motor->last;

@@ -1,20 +1,20 @@
-/* What the motors of hinges are told in the course of time. */
+/* What the motors of hinges and guides are told in the course of time. */
 #pragma once
 #include "io/store.h"
 #include "world/world.h"
 
-/* Takes a motor of joint `joint` (of sim.constraints), or with joint -1 of the hinge of a body; one that is
-   not given is none. key: of the motor in the definition of that. */
-tobi_status tobi_motors_add(tobi_world *w, const tobi_motor_def *def, const char *key, int joint, int body,
-                            tobi_error *err);
-/* At the start: the motors of bodies' own hinges become constraints, behind the joints; all are told what
+/* Takes a motor of joint `joint` (of sim.constraints), or with joint -1 of the hinge of a body, with slides 1
+   of its guide; one that is not given is none. key: of the motor in the definition of that. */
+tobi_status tobi_motors_add(tobi_world *w, const tobi_motor_def *def, const char *key, int slides, int joint,
+                            int body, tobi_error *err);
+/* At the start: the motors of bodies' own joints become constraints, behind the joints; all are told what
    the time 0 asks for. */
 tobi_status tobi_motors_start(tobi_world *w, tobi_error *err);
 /* What a step of dt from t on is to begin and to end with. */
 tobi_status tobi_motors_tell(tobi_world *w, double t, double dt, tobi_error *err);
-/* The motor of a body's own hinge, NULL if there is none. */
+/* The motor of a body's own joint, NULL if there is none. */
 const tobi_constraint *tobi_motors_of_body(const tobi_world *w, int body);
-/* Joints between bodies: constraints without motors of bodies' own hinges. */
+/* Joints between bodies: constraints without motors of bodies' own. */
 int tobi_motors_joint_count(const tobi_world *w);
 void tobi_motors_free(tobi_world *w);
 

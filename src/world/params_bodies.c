@@ -2,6 +2,23 @@
 #include "base/param_rows.h"
 #include "base/param.h"
 
+/* What a motor of a hinge and one of a guide have alike; it acts on `place`, or with `load`. */
+#define MOTOR_FILE(key_of, type, motor, place, load) \
+    { .key = key_of "file", TEXT, AT(type, motor.file), .unit = "path", \
+      .doc = "Or a CSV file: time (s) and one of speed, " place " and " load ", in these units. Cubic " \
+             "between the rows; before the first and after the last it stays." }, \
+    { .key = key_of "amplitude", REAL, AT(type, motor.amplitude), RANGE(-1e8, 1e8), .unit = "1", \
+      .doc = "amplitude sin(2 pi t/period + phase) is added to speed, " place " or " load ", in its " \
+             "unit." }, \
+    { .key = key_of "period", REAL, AT(type, motor.period), DURATION, .unit = "s", .text = "none", \
+      .doc = "Time of one cycle of that." }, \
+    { .key = key_of "phase", REAL, AT(type, motor.phase), RANGE(-1e9, 1e9), .unit = "degrees", \
+      .doc = "Phase at time 0." }, \
+    { .key = key_of "start", REAL, AT(type, motor.start), RANGE(-1e9, 1e9), .unit = "s", \
+      .doc = "Until then speed, " place " or " load " is 0; the sine counts from time 0 all the same." }, \
+    { .key = key_of "ramp", REAL, AT(type, motor.ramp), RANGE(0, 1e9), .unit = "s", \
+      .doc = "It grows like (1 - cos(pi s/ramp))/2 in so many seconds after start." }
+
 #define MOTOR(key_of, type, motor) \
     { .key = key_of "speed", REAL, AT(type, motor.speed), .def = { TOBI_NOT_GIVEN }, RANGE(-1e6, 1e6), \
       .unit = "degrees/s", .text = "none", \
@@ -11,21 +28,23 @@
       .unit = "degrees", .text = "none", .doc = "Or the angle that it turns to, from the start." }, \
     { .key = key_of "torque", REAL, AT(type, motor.torque), .def = { TOBI_NOT_GIVEN }, RANGE(-1e8, 1e8), \
       .unit = "N m", .text = "none", .doc = "Or the torque about the axis on the body." }, \
-    { .key = key_of "file", TEXT, AT(type, motor.file), .unit = "path", \
-      .doc = "Or a CSV file: time (s) and one of speed, angle and torque, in these units. Cubic between " \
-             "the rows; before the first and after the last it stays." }, \
-    { .key = key_of "amplitude", REAL, AT(type, motor.amplitude), RANGE(-1e8, 1e8), .unit = "1", \
-      .doc = "amplitude sin(2 pi t/period + phase) is added to speed, angle or torque, in its unit." }, \
-    { .key = key_of "period", REAL, AT(type, motor.period), DURATION, .unit = "s", .text = "none", \
-      .doc = "Time of one cycle of that." }, \
-    { .key = key_of "phase", REAL, AT(type, motor.phase), RANGE(-1e9, 1e9), .unit = "degrees", \
-      .doc = "Phase at time 0." }, \
-    { .key = key_of "start", REAL, AT(type, motor.start), RANGE(-1e9, 1e9), .unit = "s", \
-      .doc = "Until then speed, angle or torque is 0; the sine counts from time 0 all the same." }, \
-    { .key = key_of "ramp", REAL, AT(type, motor.ramp), RANGE(0, 1e9), .unit = "s", \
-      .doc = "It grows like (1 - cos(pi s/ramp))/2 in so many seconds after start." }, \
+    MOTOR_FILE(key_of, type, motor, "angle", "torque"), \
     { .key = key_of "torque_max", REAL, AT(type, motor.torque_max), RANGE(1e-15, 1e15), .unit = "N m", \
       .text = "unlimited", .doc = "Of a speed or an angle: the largest torque of the motor, of either sign." }
+
+#define GUIDE_MOTOR(key_of, type, motor) \
+    { .key = key_of "speed", REAL, AT(type, motor.speed), .def = { TOBI_NOT_GIVEN }, RANGE(-1e6, 1e6), \
+      .unit = "m/s", .text = "none", \
+      .doc = "Of a motor: the speed that the body slides at, along the axis. A motor has one of speed, " \
+             "position, force and file." }, \
+    { .key = key_of "position", REAL, AT(type, motor.position), .def = { TOBI_NOT_GIVEN }, PLACE, \
+      .unit = "m", .text = "none", .doc = "Or the way from the start that it goes to." }, \
+    { .key = key_of "force", REAL, AT(type, motor.force), .def = { TOBI_NOT_GIVEN }, RANGE(-1e8, 1e8), \
+      .unit = "N", .text = "none", .doc = "Or the force along the axis on the body." }, \
+    MOTOR_FILE(key_of, type, motor, "position", "force"), \
+    { .key = key_of "force_max", REAL, AT(type, motor.force_max), RANGE(1e-15, 1e15), .unit = "N", \
+      .text = "unlimited", \
+      .doc = "Of a speed or a position: the largest force of the motor, of either sign." }
 
 static const tobi_param body_rows[] = {
     { .key = "name", TEXT, AT(tobi_body_def, name), .unit = "name", .text = "body",
@@ -187,6 +206,7 @@ static const tobi_param body_rows[] = {
       .doc = "Of a spring that pulls the body back to where it starts." },
     { .key = "guide.damping", REAL, AT(tobi_body_def, guide_damping), RANGE(0, 1e15), .unit = "N s/m",
       .doc = "Of a damper along the guide." },
+    GUIDE_MOTOR("guide.motor.", tobi_body_def, guide_motor),
     { 0 }
 };
 

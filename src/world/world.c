@@ -199,7 +199,9 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     const int notes = w->note_count;
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", b->name, b->mesh.notes, err);
     if (status == TOBI_OK)
-        status = tobi_motors_add(w, &def->hinge_motor, "hinge.motor", -1, s->sim->body_count, err);
+        status = tobi_motors_add(w, &def->hinge_motor, "hinge.motor", 0, -1, s->sim->body_count, err);
+    if (status == TOBI_OK)
+        status = tobi_motors_add(w, &def->guide_motor, "guide.motor", 1, -1, s->sim->body_count, err);
     if (status == TOBI_OK) s->sim->body_count++;
     else {
         tobi_body_free(b);

@@ -110,6 +110,39 @@ for method in dfsph isph wcsph eisph; do
     check "$method: a motor at its bound sets a light flap in motion in water" \
         awk -F, 'NR > 1 && ($5 < -0.01 || $5 > 40*$1 + 0.1) { bad = 1 } END { exit bad || $5 < 30*$1 }' light/joints.csv
 done
+cat > slides.json <<'END2'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.025, "end_time": 0.1,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.3] } } ] } ],
+  "bodies": [ { "name": "piston", "box": { "min": [0.1, 0.02], "max": [0.15, 0.5] }, "dynamics": "free",
+                "guide": { "axis": [1, 0], "motor": { "file": "ways.csv" } } },
+              { "name": "buoy", "box": { "min": [0.5, 0.2], "max": [0.75, 0.4] }, "dynamics": "free", "density": 500,
+                "guide": { "axis": [0, 1], "damping": 5,
+                           "motor": { "speed": 0, "amplitude": 0.5, "period": 0.2, "force_max": 100 } } } ],
+  "output": { "interval": 0.05 } }
+END2
+printf 'time,position\n0,0\n0.04,0.002\n0.08,0.008\n' > ways.csv
+for method in dfsph wcsph isph eisph; do
+    told=$([ $method = dfsph ] && echo "scatters by")
+    expect 0 "$told" run slides.json --out slides --quiet --force --threads 1 --set method=$method
+    check "$method: force and power of guides" test "$(head -1 slides/joints.csv | cut -d, -f6-9,14-)" = \
+        "piston_gap [m],piston_motor_force [N],piston_power [W],buoy_force_x [N],buoy_motor_force [N],buoy_power [W]"
+    check "$method: a force is at its bound" \
+        awk -F, 'NR > 1 && $14^2 > 10000.01 { bad = 1 } NR > 1 && $14^2 > 9999.99 { bound = 1 }
+                 END { exit bad || !bound }' slides/joints.csv
+    check "$method: a position by a file is kept" \
+        awk -F, 'NR > 1 && $2 == "piston" && $1 > 0.09 { x = $3 } END { exit (x - 0.133)^2 > 1e-16 }' slides/bodies.csv
+    expect 0 "" run slides.json --out parts --quiet --force --threads 2 --until 0.05 --set method=$method
+    expect 0 "" resume parts --quiet --threads 2 --until 0.1
+    check "$method: guides are the same after a resume, with two threads" cmp slides/joints.csv parts/joints.csv
+done
+check "resolved.json has the motor of a guide" grep -q '"force_max": 100' slides/resolved.json
+expect 0 "" run slides/resolved.json --out again --quiet --force
+check "and runs alike" cmp slides/joints.csv again/joints.csv
+# Held 0.05 m below where it floats: 1000 9.81 0.25 0.05 N.
+expect 0 "" run slides.json --out held --quiet --force --set method=isph --set bodies.buoy.translation='[0,-0.05]' \
+    --set bodies.buoy.guide.motor='{"speed":0}' --set bodies.piston.guide.motor='{"speed":0}' --set end_time=0.5
+check "a brake holds a buoy against its buoyancy" \
+    awk -F, 'NR > 1 && $1 > 0.2 { sum += $14; n++ } END { exit !(n > 5 && (sum/n + 122.6)^2 < 16) }' held/joints.csv
 check "resolved.json has the motors" grep -q '"amplitude": 300' whole/resolved.json
 
 "$program" check rafts.json --set joints.hinge.stiffness=1e9 > out.txt 2>&1

@@ -23,9 +23,10 @@ static tobi_status ask(const char *text, tobi_control_output *out, tobi_error *e
                               .state = { 0.5, [15] = 0.25 } };
     write_file("ask.lua", text);
     TOBI_TRY(tobi_script_load_within("ask.lua", NULL, TOBI_CONTROL_SCRIPT, 0.2, &script, err));
-    in.joints[0] = (tobi_control_joint){ "elbow", 30, -4 };
-    in.joints[1] = (tobi_control_joint){ "flap", 31, 5 };
-    in.joint_count = 2;
+    in.joints[0] = (tobi_control_joint){ "elbow", { 30 }, -4, 0 };
+    in.joints[1] = (tobi_control_joint){ "flap", { 31 }, 5, 0 };
+    in.joints[2] = (tobi_control_joint){ "buoy", { 0.5 }, 6, 1 };
+    in.joint_count = 3;
     *out = (tobi_control_output){ .phase = in.phase };
     memcpy(out->state, in.state, sizeof out->state);
     tobi_status status = tobi_script_control(script, &in, out, err);
@@ -59,9 +60,11 @@ static void test_control_script(void **state)
     assert_true(out.state[0] == 0.5 && out.state[15] == 0.25);
     assert_true(out.motor[0] == TOBI_NOT_GIVEN && out.motor[1] == TOBI_NOT_GIVEN);
     assert_int_equal(ask("function control(t, b)\n"
-                         "    return { motor = { flap = b.joints.elbow.angle + b.joints.flap.speed } }\n"
+                         "    local buoy = b.joints.buoy\n"
+                         "    return { motor = { flap = b.joints.elbow.angle + b.joints.flap.speed,\n"
+                         "                       buoy = buoy.angle or buoy.position + buoy.speed } }\n"
                          "end\n", &out, &err), TOBI_OK);
-    assert_true(out.motor[0] == TOBI_NOT_GIVEN && out.motor[1] == 35);
+    assert_true(out.motor[0] == TOBI_NOT_GIVEN && out.motor[1] == 35 && out.motor[2] == 6.5);
     static const struct { const char *text, *words; } bad[] = {
         { "function control(t, b) return t.x end", "ask.lua:1: attempt to index" },
         { "function place() return 0, 0, 0 end", "define function control(t, body)" },
@@ -81,7 +84,7 @@ static void test_control_script(void **state)
         { "function control() return { motor = { flap = 'x' } } end", "a motor as { NAME = number }" },
         { "function control() return { motor = { flap = 1/0 } } end", "motor that is not finite" },
         { "function control() return { motor = { knee = 3 } } end",
-          "body has no joint 'knee'; it has elbow, flap" },
+          "body has no joint 'knee'; it has buoy, elbow, flap" },
         { "function control() return { froce = {0, 0, 0} } end", "unknown key 'froce'" },
         { "function control() return { force = {0/0, 0, 0} } end", "force that is not finite (t = 2 s)" },
         { "function control() return { torque = {0, 1/0, 0} } end", "torque that is not finite" },
@@ -180,6 +183,53 @@ static void test_motors(void **state)
     remove("motors.h5");
 }
 
+static tobi_status lift(void *user, const tobi_control_input *in, tobi_control_output *out, tobi_error *err)
+{
+    (void)user; (void)err;
+    assert_true(in->joint_count == 1 && in->joints[0].slides);
+    assert_string_equal(in->joints[0].name, "slide");
+    if (in->time > 0.2) out->motor[0] = in->joints[0].position < 0.05 ? 0.25 : 0;
+    return TOBI_OK;
+}
+
+/* A body of 8 kg on a guide, lifted against gravity: full force, then the speed that the program tells. */
+static void test_guide(void **state)
+{
+    (void)state;
+    tobi_error err = { 0 };
+    tobi_world *w[2];
+    tobi_joint_info slide;
+    for (int k = 0; k < 2; k++) {
+        tobi_world_def def = tobi_default_world_def();
+        tobi_body_def b = tobi_default_body_def();
+        def.method = "mlsmpm";
+        for (int a = 0; a < 3; a++) def.domain_max[a] = 4, b.box_min[a] = 2, b.box_max[a] = 2.2;
+        def.spacing = 0.1;
+        def.time_step = 0.005;
+        assert_int_equal(tobi_world_create(&def, NULL, &w[k], &err), TOBI_OK);
+        b.name = "slide", b.dynamics = TOBI_CONTROLLED, b.control = lift, b.guide_axis[2] = 1;
+        b.guide_motor.speed = 0, b.guide_motor.force_max = 100;
+        assert_int_equal(tobi_world_add_body(w[k], &b, &err), TOBI_OK);
+    }
+    run_to(w[0], 0.2);
+    tobi_world_joint(w[0], 0, &slide);
+    assert_true(slide.has_motor && slide.slides && slide.motor_torque == 0);
+    assert_true(fabs(slide.motor_force - 8*9.81) < 1e-6 && fabs(slide.power) < 1e-9);
+    run_to(w[0], 0.25);
+    tobi_world_joint(w[0], 0, &slide);
+    const double a = 100/8.0 - 9.81, v = -slide.power/100;       /* told in the step around 0.2 s */
+    if (fabs(slide.motor_force - 100) > 1e-6 || v < a*0.037 || v > a*0.05)
+        fail_msg("%g N, %g W", slide.motor_force, slide.power);
+    assert_int_equal(tobi_world_save(w[0], "motors.h5", &err), TOBI_OK);
+    const uint64_t whole = run_to(w[0], 1);
+    tobi_world_joint(w[0], 0, &slide);
+    assert_true(fabs(slide.motor_force - 8*9.81) < 1e-6);
+    assert_int_equal(tobi_world_load(w[1], "motors.h5", &err), TOBI_OK);
+    assert_true(run_to(w[1], 1) == whole);
+    for (int k = 0; k < 2; k++) tobi_world_destroy(w[k]);
+    remove("motors.h5");
+}
+
 static void test_wrong_motors(void **state)
 {
     (void)state;
@@ -197,6 +247,7 @@ static void test_wrong_motors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_control_script), cmocka_unit_test(test_motors),
-                                        cmocka_unit_test(test_wrong_motors) };
+                                        cmocka_unit_test(test_wrong_motors),
+                                        cmocka_unit_test(test_guide) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,30 +1,45 @@
-/* Motors of hinges: closed solutions by torque, speed and angle, of joints and of a body's own hinge;
-   momentum, work, stops; what is refused. */
+/* Motors of hinges and guides: closed solutions by torque, speed and angle, of joints, of a body's own hinge
+   and of its guide; momentum, work, stops; what is refused. */
 #include "rigid_rig.h"
 #include "mistakes.h"
 
 static const double weightless[3] = { 0 };
 
-/* A bar 1 m long from (2, 2, 2) along x; about its end along z it turns: 0 by a joint, 1 by its own hinge. */
+enum { JOINT, HINGE, GUIDE, WAYS };
+
+/* A bar 1 m long from (2, 2, 2) along x; about its end along z it turns by a joint or its own hinge, or
+   slides along a slant. */
 static tobi_constraint *add_arm(rig *g, int own)
 {
+    const double slant[3] = { 0.6, 0, 0.8 };
     tobi_body_def def = rig_def();
     def.spacing = 0.05;
-    def.hinge_axis[2] = own;
-    for (int a = 0; a < 3; a++) def.hinge_point[a] = 2;
+    def.hinge_axis[2] = own == HINGE;
+    for (int a = 0; a < 3; a++) def.hinge_point[a] = 2, def.guide_axis[a] = own == GUIDE ? slant[a] : 0;
     rig_box(g, def, (double[3]){ 1, 0.1, 0.1 }, (double[3]){ 2.5, 2, 2 });
     tobi_constraint *j = g->joints.at = calloc(1, sizeof *g->joints.at);
     *j = (tobi_constraint){ .kind = own ? TOBI_BETWEEN_MOTOR : TOBI_BETWEEN_HINGE, .body = { 0, -1 },
                             .point = { { -0.5 }, { 2, 2, 2 } }, .axis = { { 0, 0, 1 }, { 0, 0, 1 } } };
+    j->slides = own == GUIDE;
+    if (j->slides) memcpy(j->axis[0], slant, sizeof slant), memset(j->point, 0, sizeof j->point);
     j->motor.most = INFINITY;
     g->joints.count = 1;
     return j;
 }
 
-/* About the end. */
-static double moment_of(const rig *g) { return g->bodies[0].rigid.inertia[8] + 0.25*g->bodies[0].rigid.mass; }
+/* About the end, or of a guide the mass. */
+static double moment_of(const rig *g)
+{
+    const tobi_rigid *r = &g->bodies[0].rigid;
+    return g->joints.at->slides ? r->mass : r->inertia[8] + 0.25*r->mass;
+}
 
-static double angle_of(const rig *g) { return tobi_constraint_angle(g->joints.at, g->bodies, 0); }
+static double angle_of(const rig *g) { return tobi_constraint_place(g->joints.at, g->bodies, 0); }
+static double torque_of(const rig *g)
+{
+    const tobi_joint_info *i = &g->joints.at->info;
+    return g->joints.at->slides ? i->motor_force : i->motor_torque;
+}
 static double rate_of(const rig *g) { return tobi_constraint_rate(g->joints.at, g->bodies); }
 
 /* As a world does: what the step begins and ends with. */
@@ -38,7 +53,7 @@ static void drive(rig *g, double before, double value, double dt)
 static void a_constant_torque_turns_by_half_alpha_t2(void **state)
 {
     (void)state;
-    for (int own = 0; own < 2; own++) {
+    for (int own = 0; own < WAYS; own++) {
         rig g;
         rig_open(&g, 5, weightless);
         tobi_constraint *j = add_arm(&g, own);
@@ -54,7 +69,7 @@ static void a_constant_torque_turns_by_half_alpha_t2(void **state)
         /* the arc of a joint between bodies is of second order */
         if (fabs(off) > (own ? 1e-12 : 1e-5) || fabs(lost) > 1e-10)
             fail_msg("off by %g, %g of the work lost", off, lost);
-        assert_true(j->info.motor_torque == 3);
+        assert_true(torque_of(&g) == 3);
         rig_close(&g);
     }
 }
@@ -63,11 +78,12 @@ static void a_constant_torque_turns_by_half_alpha_t2(void **state)
 static void a_speed_is_reached_by_the_largest_torque(void **state)
 {
     (void)state;
-    for (int own = 0; own < 2; own++) {
+    for (int own = 0; own < WAYS; own++) {
         rig g;
         rig_open(&g, 5, weightless);
         tobi_constraint *j = add_arm(&g, own);
-        const double w = 1.5, most = 4, I = moment_of(&g), due = I*w/most, dt = due/100.5;
+        const double w = own == GUIDE ? 0.3 : 1.5, most = 4, I = moment_of(&g), due = I*w/most;
+        const double dt = due/100.5;
         j->motor = (tobi_motor){ .kind = TOBI_MOTOR_SPEED, .most = most, .before = w, .value = w };
         rig_start(&g);
         double work = 0;
@@ -77,7 +93,7 @@ static void a_speed_is_reached_by_the_largest_torque(void **state)
             const double expected = fmin(most*g.time/I, w);
             if (fabs(rate_of(&g) - expected) > 1e-12) fail_msg("%g rad/s at %g s", rate_of(&g), g.time);
             const double torque = n <= 100 ? most : n == 101 ? 0.5*most : 0;
-            if (fabs(j->info.motor_torque - torque) > 1e-9) fail_msg("%g N m", j->info.motor_torque);
+            if (fabs(torque_of(&g) - torque) > 1e-9) fail_msg("%g N m", torque_of(&g));
         }
         assert_true(fabs(work/(0.5*I*w*w) - 1) < 1e-10);
         assert_true(fabs(angle_of(&g) - (w*g.time - 0.5*w*due)) < w*dt);
@@ -90,7 +106,7 @@ static double swing(double t) { return 0.6*sin(3*t); }
 static void an_angle_is_kept_to_rounding_and_takes_the_torque_of_its_acceleration(void **state)
 {
     (void)state;
-    for (int own = 0; own < 2; own++) {
+    for (int own = 0; own < WAYS; own++) {
         rig g;
         rig_open(&g, 5, weightless);
         tobi_constraint *j = add_arm(&g, own);
@@ -101,8 +117,8 @@ static void an_angle_is_kept_to_rounding_and_takes_the_torque_of_its_acceleratio
             const double off = angle_of(&g) - swing(g.time);
             if (fabs(off) > 1e-12) fail_msg("off by %g", off);
             const double exact = -9*swing(g.time - 0.002)*moment_of(&g);
-            if (n > 0 && fabs(j->info.motor_torque - exact) > 1e-4*9*0.6*moment_of(&g))
-                fail_msg("%g N m, exact %g", j->info.motor_torque, exact);
+            if (n > 0 && fabs(torque_of(&g) - exact) > 1e-4*9*0.6*moment_of(&g))
+                fail_msg("%g N m, exact %g", torque_of(&g), exact);
         }
         rig_close(&g);
     }
@@ -112,7 +128,7 @@ static void an_angle_is_kept_to_rounding_and_takes_the_torque_of_its_acceleratio
 static void an_angle_far_away_is_reached_without_overshoot(void **state)
 {
     (void)state;
-    for (int own = 0; own < 2; own++) {
+    for (int own = 0; own < WAYS; own++) {
         rig g;
         rig_open(&g, 5, weightless);
         tobi_constraint *j = add_arm(&g, own);
@@ -122,7 +138,7 @@ static void an_angle_far_away_is_reached_without_overshoot(void **state)
         for (int n = 0; n < 2000; n++) {
             drive(&g, 1, 1, 1e-3);
             most = fmax(most, angle_of(&g));
-            assert_true(fabs(j->info.motor_torque) <= 20*(1 + 1e-9));
+            assert_true(fabs(torque_of(&g)) <= 20*(1 + 1e-9));
         }
         assert_true(most < 1 + 1e-5 && fabs(angle_of(&g) - 1) < 1e-12 && fabs(rate_of(&g)) < 1e-9);
         rig_close(&g);
@@ -166,7 +182,7 @@ static void a_motor_keeps_angular_momentum(void **state)
 static void a_motor_stops_at_stops(void **state)
 {
     (void)state;
-    for (int own = 0; own < 2; own++) {
+    for (int own = 0; own < WAYS; own++) {
         rig g;
         rig_open(&g, 5, weightless);
         tobi_constraint *j = add_arm(&g, own);
@@ -227,6 +243,32 @@ static void mistakes_in_a_scene_are_told(void **state)
         char text[2000];
         snprintf(text, sizeof text, head, cases[k][0], cases[k][1]);
         expect_mistakes(text, &cases[k][2], 1);
+    }
+}
+
+static void mistakes_in_a_guide_are_told(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        { "{ \"speed\": 5, \"force\": 2 }",
+          "guide.motor: a motor has one of speed, position, force and file; this one has several" },
+        { "{ \"force\": 5, \"force_max\": 1 }",
+          "guide.motor.force_max: force_max is for a motor by speed or position; this one has a force" },
+        { "{ \"position\": 0.3 }", "guide.motor.position: the motor asks for 0.3 m at time 0, where the "
+          "guide is at 0; allowed are 0, or a ramp or force_max in which it gets there" },
+        { "{ \"angle\": 3 }", "guide.motor.angle: unknown key" },
+        { "{ \"position\": 0, \"force_max\": -1 }",
+          "guide.motor.force_max: is -1, allowed is 1e-15 to 1e15 N, or \"unlimited\"" },
+    };
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        char text[2000];
+        snprintf(text, sizeof text, "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, "
+                 "\"spacing\": 0.1, \"end_time\": 1, \"fluids\": [ { \"name\": \"water\", "
+                 "\"fill\": [ { \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 0.5] } } ] } ], "
+                 "\"bodies\": [ { \"name\": \"buoy\", \"box\": { \"min\": [0.2, 0, 0], "
+                 "\"max\": [0.3, 1, 1] }, \"dynamics\": \"free\", "
+                 "\"guide\": { \"axis\": [0, 0, 1], \"motor\": %s } } ] }", cases[k][0]);
+        expect_mistakes(text, &cases[k][1], 1);
     }
 }
 
@@ -296,9 +338,9 @@ static void mistakes_in_c_are_told(void **state)
     remove("motor.csv");
 }
 
-static void a_body_without_hinge_has_no_motor(void **state)
+/* A motor of a body with a joint of the other kind, and a mistake in a file. */
+static void refuse_body(const char *key, const char *words, double hinge, const tobi_motor_def *motor)
 {
-    (void)state;
     tobi_error err = { 0 };
     tobi_world *world;
     tobi_world_def w = tobi_default_world_def();
@@ -306,11 +348,31 @@ static void a_body_without_hinge_has_no_motor(void **state)
     w.spacing = 0.05;
     for (int a = 0; a < 3; a++) w.domain_max[a] = 1, b.box_min[a] = 0.2, b.box_max[a] = 0.4;
     assert_int_equal(tobi_world_create(&w, NULL, &world, &err), TOBI_OK);
-    b.name = "flap", b.dynamics = TOBI_FREE, b.hinge_motor.torque = 5;
+    b.name = "flap", b.dynamics = TOBI_FREE;
+    b.hinge_axis[1] = hinge, b.guide_axis[1] = 1 - hinge;
+    if (strcmp(key, "hinge.motor") == 0) b.hinge_motor = *motor;
+    else b.guide_motor = *motor;
     assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_INVALID);
-    assert_string_equal(err.key, "hinge.motor");
-    assert_non_null(strstr(err.text, "body 'flap' has a motor and no hinge that it turns"));
+    if (!strstr(err.text, words) || strncmp(err.key, key, strlen(key)) != 0)
+        fail_msg("'%s' at '%s': %s at %s", words, key, err.text, err.key);
     tobi_world_destroy(world);
+}
+
+static void a_motor_is_of_the_joint_that_the_body_has(void **state)
+{
+    (void)state;
+    tobi_motor_def by_load = tobi_default_body_def().hinge_motor, by_file = by_load;
+    by_load.torque = 5;
+    refuse_body("hinge.motor", "body 'flap' has a motor and no hinge that it turns", 0, &by_load);
+    refuse_body("guide.motor", "body 'flap' has a motor and no guide that it moves it along", 1, &by_load);
+    by_file.file = write_file("time,angle\n0,0\n1,2\n");
+    refuse_body("guide.motor.file", "there is no column \"angle\"; allowed are time (s) and one of position "
+                "(m), speed (m/s) and force (N), as it is of a guide", 0, &by_file);
+    by_file.file = write_file("time,speed [degrees/s]\n0,0\n1,2\n");
+    refuse_body("guide.motor.file", "column speed is in [degrees/s]; allowed is [m/s]", 0, &by_file);
+    by_file.file = write_file("time,position\n0,1\n1,2\n");
+    refuse_body("guide.motor.file", "the motor asks for 1 m at time 0, where the guide is at 0", 0, &by_file);
+    remove("motor.csv");
 }
 
 int main(void)
@@ -324,7 +386,8 @@ int main(void)
         cmocka_unit_test(a_motor_stops_at_stops),
         cmocka_unit_test(mistakes_in_a_scene_are_told),
         cmocka_unit_test(mistakes_in_c_are_told),
-        cmocka_unit_test(a_body_without_hinge_has_no_motor),
+        cmocka_unit_test(mistakes_in_a_guide_are_told),
+        cmocka_unit_test(a_motor_is_of_the_joint_that_the_body_has),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
