@@ -181,6 +181,9 @@ TOBI_API double  tobi_world_time(const tobi_world *world);
 TOBI_API const tobi_step_info *tobi_world_info(const tobi_world *world);
 TOBI_API int     tobi_world_body_count(const tobi_world *world);
 TOBI_API tobi_status tobi_world_body(const tobi_world *world, int body, tobi_body_info *info);
+/* Energy and power of a body; the same of all bodies, joints and lines. Powers are known after a step. */
+TOBI_API tobi_status tobi_world_body_energy(const tobi_world *world, int body, tobi_body_energy *energy);
+TOBI_API tobi_status tobi_world_energy(const tobi_world *world, tobi_energy *energy);
 TOBI_API const char *tobi_world_body_name(const tobi_world *world, int body);
 TOBI_API int     tobi_world_solid_count(const tobi_world *world);
 TOBI_API tobi_status tobi_world_solid(const tobi_world *world, int solid, tobi_solid_info *info);

@@ -559,6 +559,23 @@ typedef struct tobi_body_info {
     double sampled_volume;        /* m3, number of body particles times spacing^3                     */
 } tobi_body_info;
 
+/* Energy of a body that moves by forces, 0 of others, and what it is given: power, mean over the last step,
+   0 of one that changes its shape. Summed over the steps, power times dt is the work. In 2-D all is per m. */
+typedef struct tobi_body_energy {
+    double kinetic, potential;    /* J: of centre of mass and turn; in gravity against domain_min     */
+    double power;                 /* W, by fluids and solids; of a body with a motion, it takes -power */
+    double contact_power;         /* W, by bodies and sides that touch it                             */
+} tobi_body_energy;
+
+/* Energy of a world besides that of its fluids and solids. */
+typedef struct tobi_energy {
+    double kinetic, potential;    /* J, of all bodies that move by forces                             */
+    double springs;               /* J, in springs of joints, hinges, guides, and in lines            */
+    double motion_power;          /* W, that bodies with a motion give fluids and solids              */
+    double joint_power;           /* W, that dampers and motors of joints take from the bodies        */
+    double line_power;            /* W, that damping of lines takes from them                         */
+} tobi_energy;
+
 #ifdef __cplusplus
 }
 #endif

@@ -112,6 +112,8 @@ typedef struct tobi_body {
     double (*rest_vertex)[3];        /* vertices about the centre of mass, in rest axes        */
     tobi_bvh *rest_bvh;              /* of rest_vertex; NULL before tobi_body_build_rest       */
     tobi_body_load load[TOBI_SYSTEM_LIMIT];      /* of this step: each system adds to its own  */
+    double start[6];                 /* m/s, rad/s: of a free body, when the step began        */
+    double power[2];                 /* W: that particles, and contact, give it; tobi_body_find_power */
     tobi_body_info info;             /* its forces: tobi_body_sum_loads                        */
 } tobi_body;
 
@@ -174,13 +176,6 @@ void tobi_body_find_absence(tobi_body *b);
    coordinates. TOBI_INVALID in words for numbers that are not finite, and for z in 2-D. */
 tobi_status tobi_body_ask_motion(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
                                  double (*out)[3], tobi_error *err);
-/* Where the material at the rest centre is at t, m, and how it is turned: as tobi_body.frame. */
-tobi_status tobi_body_find_frame(const tobi_body *b, double t, double centre[3], double frame[3][3],
-                                 tobi_error *err);
-/* Quaternion w x y z of the rotation whose columns are the frame's rows. */
-void tobi_frame_quaternion(const double frame[3][3], double q[4]);
-/* rad/s, the angular velocity that turns one frame into another in dt. */
-void tobi_frame_rate(const double from[3][3], const double to[3][3], double dt, double omega[3]);
 /* For a substep: puts a body with a motion where it is `way` s after t, as a rigid body; one that deforms is
    moved by `more` s along the mean velocities of the step. `next` stays. */
 tobi_status tobi_body_place_within(tobi_body *b, double t, double way, double more, tobi_error *err);
@@ -193,8 +188,12 @@ void tobi_body_set_previous_velocities(tobi_body *b);
 void tobi_body_update_surface(tobi_body *b);
 /* Makes `next` the present pose at time t. */
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err);
-/* Before a step: no system presses. */
+/* Before a step: no system presses; keeps the velocities as `start`. */
 void tobi_body_clear_loads(tobi_body *b);
+/* After a step: its mean velocities in it, m/s, rad/s. An impulse J gives a free body the work J of them. */
+void tobi_body_mean_velocity(const tobi_body *b, double u[6]);
+/* After that: W, mean over the step; 0 of a body that changes its shape. */
+void tobi_body_find_power(tobi_body *b);
 /* After a step: the sums of the loads as the forces of `info`. */
 void tobi_body_sum_loads(tobi_body *b);
 /* Copies pose and velocities of a free body from `rigid` into `info`. */

@@ -4,7 +4,32 @@
 #include "geom/vec3.h"
 #include <string.h>
 
-void tobi_body_clear_loads(tobi_body *b) { memset(b->load, 0, sizeof b->load); }
+void tobi_body_clear_loads(tobi_body *b)
+{
+    memset(b->load, 0, sizeof b->load);
+    memcpy(b->start, b->rigid.velocity, sizeof b->rigid.velocity);
+    memcpy(b->start + 3, b->rigid.angular_velocity, sizeof b->rigid.angular_velocity);
+}
+
+void tobi_body_mean_velocity(const tobi_body *b, double u[6])
+{
+    const double share = b->rigid.kind == TOBI_PRESCRIBED ? 1 : 0.5;
+    for (int a = 0; a < 3; a++) {
+        u[a] = share*b->rigid.velocity[a] + (1 - share)*b->start[a];
+        u[3 + a] = share*b->rigid.angular_velocity[a] + (1 - share)*b->start[3 + a];
+    }
+}
+
+void tobi_body_find_power(tobi_body *b)
+{
+    const tobi_body_info *i = &b->info;
+    double u[6];
+    tobi_body_mean_velocity(b, u);
+    b->power[0] = vec3_dot(i->pressure_force, u) + vec3_dot(i->viscous_force, u) +
+                  vec3_dot(i->pressure_torque, u + 3) + vec3_dot(i->viscous_torque, u + 3);
+    b->power[1] = vec3_dot(i->contact_force, u) + vec3_dot(i->contact_torque, u + 3);
+    if (b->deforms) b->power[0] = b->power[1] = 0;
+}
 
 /* What is rounding alone in 2-D: the force along z and the torques about x and y. */
 static void flatten(double load[6])

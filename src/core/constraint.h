@@ -58,9 +58,7 @@ typedef struct tobi_constraint {
     double torque[3], before[3], damped[3];      /* N m on the body: of the spring, now and a step before,
                                             and of the damper; of a guide's motor N                     */
     double start[4];                     /* how the body is turned against the other at the start       */
-    double next_point[3], next_axis[3], next_turn[4];   /* at the end of the step, of a body that is
-                                            prescribed: place, axis, orientation                        */
-    double spin[3];                      /* rad/s, of such a body in the step                           */
+    double next_point[3], next_axis[3];  /* at the end of the step, of a body that is prescribed        */
     double impulse[6];                   /* N s, N m s at the joint: on the body, in this step          */
     tobi_motor motor;
     double rate_before;                  /* rad/s, when the step began                                  */
@@ -99,11 +97,7 @@ void tobi_constraint_end(const tobi_constraint *j, int side, const tobi_body *bo
                          double point[3], double axis[3]);
 /* joint_angle.c: of the body against the other since the start, rad, -pi to pi; next: at the next pose. */
 double tobi_constraint_angle(const tobi_constraint *j, const tobi_body *bodies, int next);
-/* joint_motion.c: where a prescribed body takes its side of the joint in a step of dt from t on; arm: m, of
-   the place that shows the axis. */
-tobi_status tobi_constraint_follow(tobi_constraint *j, const tobi_body *bodies, double arm, double t,
-                                   double dt, tobi_error *err);
-/* joint_angle.c: how fast the angle grows, rad/s, m/s. */
+/* How fast it grows, rad/s, m/s. */
 double tobi_constraint_rate(const tobi_constraint *j, const tobi_body *bodies);
 /* -1, 1: at the lower or upper stop within rounding, in the present pose, or beyond it; else 0. */
 int tobi_constraint_at_stop(const tobi_constraint *j, double angle);
@@ -111,6 +105,8 @@ int tobi_constraint_at_stop(const tobi_constraint *j, double angle);
 double tobi_constraint_place(const tobi_constraint *j, const tobi_body *bodies, int next);
 /* Torques of springs and dampers at the present poses; those of the last call become `before`. */
 void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodies);
+/* J: of its spring. */
+double tobi_constraint_energy(const tobi_constraint *j, const tobi_body *bodies);
 /* Adds to force and torque on a body: `now` of the springs, `before` of them a step ago, `damped` of
    dampers. */
 void tobi_constraints_add_springs(const tobi_constraints *c, int body, double now, double before,

@@ -235,13 +235,16 @@ void tobi_joint_drift(tobi_rigid *r, double dt)
 /* Velocity Verlet alone; a liquid's drift took the pull where it began, and contact has none. */
 void tobi_joint_kick(tobi_rigid *r, double dt, const double impulse[6], const double damped[6])
 {
-    const tobi_joint *j = &r->joint;
+    tobi_joint *j = &r->joint;
     const double now = tobi_joint_pull(r), pull = j->driven ? j->pull : j->held ? now : 0.5*(j->pull + now);
     double S[6];
     tobi_joint_load_kick(r, dt, impulse, damped);
     tobi_joint_span(r, S);
-    const double change = dt*pull + (dot6(j->freedom, impulse) + dt*dot6(S, damped))/j->mass;
-    tobi_joint_set_rate(r, tobi_rigid_keep(r, dt)*(tobi_joint_rate(r) + change));
+    const double change = dt*pull + (dot6(j->freedom, impulse) + dt*dot6(S, damped))/j->mass,
+                 rate = tobi_joint_rate(r) + change, keep = tobi_rigid_keep(r, dt);
+    const double share = j->damping > 0 ? j->damping/(j->damping + j->mass*r->air_resistance) : 0;
+    j->damped = share*j->mass*(1 - keep)*rate;
+    tobi_joint_set_rate(r, keep*rate);
 }
 
 void tobi_joint_stop(tobi_rigid *r, double dt, double bounce, const double impulse[6])
@@ -257,6 +260,12 @@ void tobi_joint_stop(tobi_rigid *r, double dt, double bounce, const double impul
         rate = rate*stop > bounce*fabs(tobi_joint_pull(r))*dt ? -r->restitution*rate : 0;
     r->joint.stopped += r->joint.mass*rate;
     tobi_joint_set_rate(r, rate);
+}
+
+double tobi_joint_energy(const tobi_rigid *r)
+{
+    const double stiffness = r->joint.stiffness, q = stiffness > 0 ? tobi_joint_position(r) : 0;
+    return 0.5*stiffness*q*q;
 }
 
 double tobi_joint_step_limit(const tobi_rigid *r)

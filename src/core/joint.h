@@ -29,7 +29,7 @@ typedef struct tobi_joint {
     double before[3];                /* m: the centre where the drift began                              */
     double momentum[6];              /* kg m/s, kg m2/s about the point, where the drift began           */
     double other[6];                 /* N s, N m s about the point: of all but the bearing, in this step */
-    double stopped;                  /* N m s or N s along q: of the stop, in this step                  */
+    double stopped, damped;          /* N m s or N s along q: of the stop, against the damper, in this step */
     tobi_joint_info info;            /* of the bearing and its stop                                      */
 } tobi_joint;
 
@@ -73,5 +73,7 @@ void tobi_joint_load_add(struct tobi_rigid *r, const double impulse[6]);
 /* After the step, dt long, s; 0: the load is not known. */
 void tobi_joint_report(struct tobi_rigid *r, double dt);
 
+/* J: of its spring. */
+double tobi_joint_energy(const struct tobi_rigid *r);
 /* s: a third of a radian of the spring's swing; INFINITY without. */
 double tobi_joint_step_limit(const struct tobi_rigid *r);

@@ -15,8 +15,8 @@ static void find_turn(const tobi_constraint *j, const tobi_body *bodies, int nex
     const tobi_rigid *r = &bodies[j->body[0]].rigid;
     if (j->body[1] >= 0) {
         const tobi_rigid *other = &bodies[j->body[1]].rigid;
-        const double *then = other->kind == TOBI_PRESCRIBED ? j->next_turn : other->next_orientation;
-        memcpy(to, next ? then : other->orientation, sizeof to);
+        const int moves = next && other->kind != TOBI_PRESCRIBED;
+        memcpy(to, moves ? other->next_orientation : other->orientation, sizeof to);
     }
     for (int a = 1; a < 4; a++) to[a] = -to[a];
     tobi_quaternion_product(to, next ? r->next_orientation : r->orientation, q);
@@ -68,6 +68,18 @@ static int acts(const tobi_constraint *j)
     return j->stiffness > 0 || j->damping > 0 || j->motor.kind == TOBI_MOTOR_TORQUE;
 }
 
+/* rad: of its spring, from where it rests. */
+static double find_turn_of_spring(const tobi_constraint *j, const tobi_body *bodies)
+{
+    return j->slides ? 0 : remainder(tobi_constraint_angle(j, bodies, 0) - j->rest, 2*acos(-1));
+}
+
+double tobi_constraint_energy(const tobi_constraint *j, const tobi_body *bodies)
+{
+    const double turn = j->stiffness > 0 ? find_turn_of_spring(j, bodies) : 0;
+    return 0.5*j->stiffness*turn*turn;
+}
+
 void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodies)
 {
     for (int k = 0; k < c->count; k++) {
@@ -76,8 +88,7 @@ void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodie
         if (!acts(j)) continue;
         find_axis(j, bodies, axis);
         memcpy(j->before, j->torque, sizeof j->before);
-        const double angle = j->slides ? j->rest : tobi_constraint_angle(j, bodies, 0),
-                     turn = remainder(angle - j->rest, 2*acos(-1)), rate = tobi_constraint_rate(j, bodies);
+        const double turn = find_turn_of_spring(j, bodies), rate = tobi_constraint_rate(j, bodies);
         const double driven = j->motor.kind == TOBI_MOTOR_TORQUE ? j->motor.value : 0;
         for (int a = 0; a < 3; a++) {
             j->torque[a] = (driven - j->stiffness*turn)*axis[a];

@@ -92,7 +92,7 @@ void tobi_joint_report(tobi_rigid *r, double dt)
     const double before = j->rate, now = tobi_joint_rate(r);
     if (dt > 0) find_load(r, dt, load);
     j->pulled = 0;
-    j->info.power = dt > 0 ? j->damping*(before*before + before*now + now*now)/3 : 0;
+    j->info.power = dt > 0 ? 0.5*(before + now)*j->damped/dt : 0;
     memcpy(j->info.force, load, sizeof j->info.force);
     memcpy(j->info.moment, load + 3, sizeof j->info.moment);
     j->info.angle = j->kind == TOBI_JOINT_HINGE ? tobi_joint_position(r)*180/acos(-1) : 0;

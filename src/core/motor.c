@@ -146,6 +146,5 @@ void tobi_motor_report(tobi_constraint *j, const tobi_body *bodies, double dt)
     else if (m->kind) torque = m->impulse/dt;
     j->info.motor_torque = dt > 0 && !j->slides ? torque : 0;
     j->info.motor_force = dt > 0 && j->slides ? torque : 0;
-    const double damped = j->damping*(before*before + before*now + now*now)/3;
-    j->info.power = dt > 0 ? damped - 0.5*torque*(before + now) : 0;
+    j->info.power = dt > 0 ? 0.5*(j->damping*before - torque)*(before + now) : 0;
 }

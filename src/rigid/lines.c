@@ -149,6 +149,53 @@ void tobi_lines_add(const tobi_line *lines, int count, int body, tobi_line_when 
         }
 }
 
+/* Integral of the tension hypot(H, V) over V, from 0, N2. */
+static double sum_tension(double h, double v)
+{
+    return 0.5*(v*hypot(h, v) + (h > 0 ? h*h*asinh(v/h) : 0));
+}
+
+/* What it takes to stretch a catenary and to lift it off its lower end: pulls H and V at its upper end. */
+static double lift(const tobi_line *l, double h, double v)
+{
+    const double w = l->weight, ea = l->stiffness*l->length;
+    const double low = l->rests ? fmax(v - w*l->length, 0) : v - w*l->length, free = (v - low)/w;
+    const double rise = (sum_tension(h, v) - sum_tension(h, low))/w - free*hypot(h, low);
+    if (!(h > 0)) return rise;       /* slack: the stretch is left out there */
+    return rise + w/ea*free*free*(0.5*low + w*free/6) +
+           (h*h*l->length + (v*v*v - low*low*low)/(3*w))/(2*ea);
+}
+
+double tobi_line_energy(const tobi_line *l)
+{
+    const tobi_line_info *i = &l->info;
+    double way[3], level[3], pull[2];
+    if (l->kind != TOBI_LINE_CATENARY) {
+        double stretch = i->distance - l->length;
+        if (l->kind == TOBI_LINE_ROPE) stretch = fmax(stretch, 0);
+        return 0.5*l->stiffness*stretch*stretch;
+    }
+    vec3_sub(way, i->to, i->point);
+    const double rise = vec3_dot(way, l->up);
+    vec3_add_scaled(level, way, -rise, l->up);
+    tobi_catenary(l, vec3_length(level), fabs(rise), pull);
+    const double low = l->rests ? 0 : vec3_dot(rise < 0 ? i->to : i->point, l->up);
+    return lift(l, pull[0], pull[1]) + l->weight*l->length*low;
+}
+
+double tobi_line_power(const tobi_line *l, const tobi_body *bodies)
+{
+    double sum = 0;
+    for (int end = 0; end < 2; end++) {
+        const int body = end ? l->to_body : l->body;
+        double u[6];
+        if (body < 0) continue;
+        tobi_body_mean_velocity(&bodies[body], u);
+        sum -= vec3_dot(l->damped[end].force, u) + vec3_dot(l->damped[end].torque, u + 3);
+    }
+    return sum;
+}
+
 /* m from the upper end of a catenary, out and down, after the share t of its length. */
 static void go_along(const tobi_line *l, const double pull[2], double t, double *out, double *down)
 {

@@ -33,6 +33,12 @@ void tobi_lines_add(const tobi_line *lines, int count, int body, tobi_line_when 
 /* s: a third of a radian of the fastest oscillation that the lines make with the bodies; INFINITY: none. */
 double tobi_lines_step_limit(const tobi_line *lines, int count, const tobi_body *bodies);
 
+/* J, after its last update: of the stretch, and of the weight of a catenary, in liquid: against its lower end
+   where it rests there, else against the origin. */
+double tobi_line_energy(const tobi_line *line);
+/* W, mean over the last step: that its damping takes. */
+double tobi_line_power(const tobi_line *line, const tobi_body *bodies);
+
 /* Points along a line after its last update, evenly along its length, from the upper end of a catenary, or
    from the body: m, in the world's coordinates. */
 void tobi_line_shape(const tobi_line *line, int count, double (*points)[3]);

@@ -1,6 +1,7 @@
 /* Whether a world can gain energy after its start. Drawback: a world that anything drives counts as open,
    however little that gives. */
 #include "core/rigid.h"
+#include "world/energies.h"
 #include "world/world.h"
 #include <math.h>
 
@@ -46,15 +47,9 @@ static int is_closed(const tobi_world *w)
 
 int tobi_world_closed(const tobi_world *w, double *bodies)
 {
-    double energy = 0;
+    tobi_energy e;
     if (!w || !is_closed(w)) return 0;
-    for (int k = 0; k < w->sim.body_count; k++) {
-        const tobi_rigid *r = &w->sim.bodies[k].rigid;
-        if (r->kind == TOBI_PRESCRIBED) continue;
-        energy += tobi_rigid_kinetic_energy(r);
-        for (int a = 0; a < w->sim.def.dimension; a++)
-            energy += r->mass*fabs(w->sim.def.gravity[a])*fmax(r->position[a], 0);
-    }
-    if (bodies) *bodies = energy;
+    tobi_energy_sum_bodies(w, &e);
+    if (bodies) *bodies = e.kinetic + e.potential;
     return 1;
 }

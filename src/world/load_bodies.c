@@ -224,6 +224,8 @@ static void take_body(tobi_body *b, tobi_loaded_body *l)
     b->info = l->info;
     b->motion_set = b->motion_due = b->motion && l->load[6] > 0;
     if (b->blade) take_edge(b, l);
+    tobi_body_clear_loads(b);
+    memset(b->power, 0, sizeof b->power);
 }
 
 tobi_status tobi_world_take_bodies(tobi_world *w, tobi_loaded_bodies *l, tobi_error *err)
