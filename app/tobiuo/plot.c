@@ -77,15 +77,16 @@ static int has_values(const rows *r, int column)
     return 0;
 }
 
-/* The sum of up to three columns, those of -1 left out. */
-static void fill_curve(curve *c, const rows *r, const int columns[3], const panel_row *row)
+/* The sum of columns, those of -1 left out. */
+static void fill_curve(curve *c, const rows *r, const int *columns, int count,
+                       const panel_row *row)
 {
     int time = table_column(r->table, "time");
     double first = NAN, scale = row && row->scale != 0 ? row->scale : 1;
     for (size_t i = 0; i < r->table->rows; i++) {
         if (!is_row(r, i) || (row && row->of_steps && table_number(r->table, i, time) == 0)) continue;
         double y = 0;
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < count; k++)
             if (columns[k] >= 0) y += table_number(r->table, i, columns[k]);
         if (isnan(first)) first = y;
         c->x[c->count] = table_number(r->table, i, time);
@@ -108,9 +109,10 @@ static int add_panel(picture *p, const rows *r, const panel_row *row, int dimens
              dimension == 2 && row->per_depth ? " per m" : "");
     a->logarithmic = row->logarithmic;
     for (const curve_row *k = row->curves; k < row->curves + PLOT_CURVES && k->column; k++) {
-        const int columns[3] = { table_column(r->table, k->column),
-                                 k->plus ? table_column(r->table, k->plus) : -1,
-                                 k->too ? table_column(r->table, k->too) : -1 };
+        int columns[2 + PLOT_SUM] = { table_column(r->table, k->column),
+                                      k->plus ? table_column(r->table, k->plus) : -1 };
+        int count = 2;
+        for (int n = 0; k->too && k->too[n]; n++) columns[count++] = table_column(r->table, k->too[n]);
         if (columns[0] < 0 || (k->plus && columns[1] < 0)) continue;
         if (dimension == 2 && is_component(k->column) && !has_values(r, columns[0]) &&
             !has_values(r, columns[1])) continue;
@@ -119,7 +121,7 @@ static int add_panel(picture *p, const rows *r, const panel_row *row, int dimens
         if (!c) return complain("out of memory");
         c->style = k->style;
         c->colour = k->colour;
-        fill_curve(c, r, columns, row);
+        fill_curve(c, r, columns, count, row);
     }
     if (a->curves > 0) p->panels++;
     return 0;
@@ -222,7 +224,7 @@ static int add_columns(picture *p, const table *t, const char *what, int dimensi
         curve *c = add_curve(a, t->names[k], t->rows);
         rows all = { t, NULL };
         if (!c) return complain("out of memory");
-        fill_curve(c, &all, (const int[3]){ k, -1, -1 }, NULL);
+        fill_curve(c, &all, &k, 1, NULL);
         c->colour = a->curves - 1;
     }
     if (left_out)
@@ -325,7 +327,7 @@ static int draw_comparison(plotter *plot, int index)
     set_time_axis(&p, r.table);
     curve *c = add_curve(&p.panel[0], "this run", r.table->rows);
     int code = c ? 0 : complain("out of memory");
-    if (c) fill_curve(c, &r, (const int[3]){ column, -1, -1 }, NULL);
+    if (c) fill_curve(c, &r, &column, 1, NULL);
     for (int k = index; code == 0 && (other = tobi_scene_reference(plot->scene, k)); k++)
         if (is_same_column(other, def)) code = add_reference(&p, other);
     if (code == 0) code = finish_picture(plot, &p, name);

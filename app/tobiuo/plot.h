@@ -2,16 +2,16 @@
 #pragma once
 #include "picture.h"
 
+enum { PLOT_CURVES = 8, PLOT_SUM = 4 };
+
 typedef struct curve_row {
     const char *label, *column;
     const char *plus;               /* a column to add, or NULL                     */
     curve_style style;
     int colour;
     const char *needs;              /* drawn only if this column has a value other than 0, or NULL */
-    const char *too;                /* one more to add, where the table has it      */
+    const char *const *too;         /* PLOT_SUM more at most, that the table has, ended by NULL; or NULL */
 } curve_row;
-
-enum { PLOT_CURVES = 8 };
 
 typedef struct panel_row {
     const char *y_label;            /* after scaling                                */

@@ -8,17 +8,29 @@
       { "y", column "_y", NULL, CURVE_LINE, 2, NULL, NULL },  \
       { "z", column "_z", NULL, CURVE_LINE, 0, NULL, NULL } }
 
+/* Energies besides those of the particles' speed and height. */
+static const char *const others[] = { "elastic_energy", "body_kinetic_energy", "body_potential_energy",
+                                      "spring_energy", NULL };
+
 const picture_row plot_history[] = {
-    { "energies", "Energy of the fluid or solids", 0, {
+    { "energies", "Energy of fluids, solids and bodies", 0, {
         { "kinetic energy, J", 0, 1, 0, 0, 0,
-          { { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL, NULL } } },
+          { { "fluids and solids", "kinetic_energy", NULL, CURVE_LINE, 0, NULL, NULL },
+            { "bodies", "body_kinetic_energy", NULL, CURVE_LINE, 1, "body_kinetic_energy", NULL } } },
         { "change since the start, J", 0, 1, 0, 1, 0,
           { { "potential", "potential_energy", NULL, CURVE_LINE, 2, NULL, NULL },
             { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL, NULL },
             { "elastic", "elastic_energy", NULL, CURVE_LINE, 1, "elastic_energy", NULL },
-            { "lost", "energy_lost", NULL, CURVE_LINE, 3, "elastic_energy", NULL },
-            { "kinetic + potential (+ elastic)", "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL,
-              "elastic_energy" } } } } },
+            { "lost by solids", "energy_lost", NULL, CURVE_LINE, 3, "elastic_energy", NULL },
+            { "bodies", "body_kinetic_energy", "body_potential_energy", CURVE_LINE, 4,
+              "body_potential_energy", NULL },
+            { "springs", "spring_energy", NULL, CURVE_LINE, 5, "spring_energy", NULL },
+            { "sum of all", "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL,
+              others } } },
+        { "work since the start, J", 0, 1, 0, 0, 0,
+          { { "given by motions", "motion_work", NULL, CURVE_LINE, 0, "motion_work", NULL },
+            { "taken by joints", "joint_work", NULL, CURVE_LINE, 1, "joint_work", NULL },
+            { "taken by lines", "line_work", NULL, CURVE_LINE, 2, "line_work", NULL } } } } },
     { "work", "Work on solids, and where it goes", 1, {
         { "work, J", 0, 1, 0, 0, 0,
           { { "by bodies", "work_bodies", NULL, CURVE_LINE, 7, "work_bodies", NULL },

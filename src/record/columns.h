@@ -4,7 +4,7 @@
 #pragma once
 
 /* H(name, unit, kind, value, meaning): history.csv. `i` is the last step's info, `s` the sums since the last
-   output, `pieces` those of the solids. */
+   output, `e` the energies of bodies and springs, `pieces` those of the solids. */
 #define HISTORY(H) \
     H("time", "s", real, i->time, "Simulated time.") \
     H("step", "1", int, i->step, "Number of the last step, from 1; 0 at the start.") \
@@ -47,6 +47,16 @@
     H("kinetic_energy", "J", real, i->kinetic_energy, "Of all fluid and solids.") \
     H("potential_energy", "J", real, i->potential_energy, \
       "In gravity, against the lower corner of the domain.") \
+    H("body_kinetic_energy", "J", real, e->kinetic, \
+      "Of all bodies that move by forces, of the turn, too; each: bodies.csv.") \
+    H("body_potential_energy", "J", real, e->potential, "Theirs, in gravity, against the lower corner.") \
+    H("spring_energy", "J", real, e->springs, \
+      "In springs of joints, hinges and guides, and in lines, with the weight of catenaries.") \
+    H("motion_work", "J", real, tobi_works_motions(run), \
+      "Done by bodies with a motion on fluids and solids since the start.") \
+    H("joint_work", "J", real, tobi_works_joints(run), \
+      "Taken from bodies by dampers and motors of joints since the start; below 0: motors drive.") \
+    H("line_work", "J", real, run->works.lines, "Taken by the damping of lines since the start.") \
     H("elastic_energy", "J", real, i->elastic_energy, "Stored in solids and compressed liquids of mlsmpm.") \
     H("work_bodies", "J", real, i->work_bodies, \
       "Done by bodies and fluids on the solids since the start; positive: the solids gain.") \
@@ -114,7 +124,14 @@
     V3(B, "mean_contact_torque", "N m", m.impulse[5], "Mean of contact_torque over that time.") \
     V3(B, "edge_force", "N", b.edge_force, \
        "The part of pressure_force that the edge of a blade takes to cut, in the last step.") \
-    V3(B, "mean_edge_force", "N", m.impulse[6], "Mean of edge_force over that time.")
+    V3(B, "mean_edge_force", "N", m.impulse[6], "Mean of edge_force over that time.") \
+    B("kinetic_energy", "J", e.kinetic, "Of the centre of mass and of the turn; 0 of a prescribed body.") \
+    B("potential_energy", "J", e.potential, \
+      "In gravity, against the lower corner of the domain; 0 of a prescribed body.") \
+    B("work", "J", work[0], \
+      "Done on it by pressure_force, viscous_force and their torques since the start; 0 of a body that " \
+      "changes its shape.") \
+    B("contact_work", "J", work[1], "Done on it by contact_force and contact_torque since the start.")
 
 /* S(name, unit, value, meaning): solids.csv after time and name, likewise. */
 #define SOLID(S) \
@@ -169,4 +186,5 @@
       "Torque of its motor about the axis on its body, where it has one.") \
     V("motor_force", "N", i.motor_force, "The same of a guide: its force along the axis.") \
     V("power", "W", i.power, \
-      "Taken from the bodies by damper and motor, where it has any; below 0 the motor drives.")
+      "Taken from the bodies by damper and motor, where it has any; below 0 the motor drives.") \
+    V("work", "J", run->works.joint[k], "Sum of power times time since the start.")

@@ -20,6 +20,7 @@ static int is_told(const tobi_run *run, const tobi_joint_info *i, int value)
     if (strcmp(values[value].name, "motor_torque") == 0) return i->has_motor && !i->slides;
     if (strcmp(values[value].name, "motor_force") == 0) return i->has_motor && i->slides;
     if (strcmp(values[value].name, "power") == 0) return i->has_power;
+    if (strcmp(values[value].name, "work") == 0) return i->has_power;
     return !values[value].solid || run->world->sim.def.dimension == 3;
 }
 

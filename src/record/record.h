@@ -33,6 +33,9 @@ enum { TOBI_BODY_FORCES = 7 };
 typedef struct tobi_body_tally { double time, impulse[TOBI_BODY_FORCES][3]; } tobi_body_tally;
 typedef struct tobi_solid_tally { double time, impulse[3]; } tobi_solid_tally;    /* of liquids */
 
+/* Work since the start, J: on each body by particles and by contact, taken by each joint, by all lines. */
+typedef struct tobi_works { double (*body)[2], *joint, lines; } tobi_works;
+
 /* One field to write. */
 typedef struct tobi_record_field {
     const char *name;                     /* of the world's list                     */
@@ -136,6 +139,7 @@ struct tobi_run {
     tobi_tally since, total;              /* since the last output; of the run       */
     tobi_body_tally *body_since;          /* one per body                            */
     tobi_solid_tally *solid_since;        /* one per solid                           */
+    tobi_works works;
     tobi_sensor_state *sensor;            /* one per column of probes.csv; NULL = none */
     double wall, step_wall;               /* s, earlier sessions + this one          */
     double begun;                         /* s, monotonic clock at the start         */
@@ -206,6 +210,15 @@ int64_t tobi_tables_waiting(const tobi_run *run);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
 void tobi_tally_bodies(tobi_run *run, double dt);
 void tobi_tally_solids(tobi_run *run, double dt);
+/* works.c: room for them; 0: there is no memory. What a step did; the work of bodies with a motion. */
+bool tobi_works_open(tobi_run *run);
+void tobi_works_free(tobi_run *run);
+void tobi_works_add(tobi_run *run, double dt);
+double tobi_works_motions(const tobi_run *run);
+double tobi_works_joints(const tobi_run *run);
+/* For checkpoints; older ones have none: json NULL, works count from there on. */
+struct json_t *tobi_works_to_json(const tobi_run *run);
+bool tobi_works_from_json(const struct json_t *json, tobi_run *run);
 
 /* record_probes.c: probes.csv. */
 tobi_status tobi_probes_open(tobi_run *run, bool continued, tobi_error *err);

@@ -31,12 +31,14 @@ static tobi_status open_run(tobi_world *world, const tobi_output_def *output, co
     tobi_run *run = calloc(1, sizeof *run);
     *out = run;
     if (run) {
+        run->world = world;
         run->dir = strdup(dir);
         run->body_since = calloc((size_t)tobi_world_body_count(world) + 1, sizeof *run->body_since);
         run->solid_since = calloc((size_t)tobi_world_solid_count(world) + 1, sizeof *run->solid_since);
     }
-    if (!run || !run->dir || !run->body_since || !run->solid_since) {
+    if (!run || !run->dir || !run->body_since || !run->solid_since || !tobi_works_open(run)) {
         if (run) {
+            tobi_works_free(run);
             free(run->dir);
             free(run->body_since);
             free(run->solid_since);
@@ -45,7 +47,6 @@ static tobi_status open_run(tobi_world *world, const tobi_output_def *output, co
         *out = NULL;
         return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
     }
-    run->world = world;
     run->output = *output;
     run->lock = -1;
     run->dir_lock = run->trouble_lock = run->aside_lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
@@ -240,6 +241,7 @@ static tobi_status step_towards(tobi_run *run, double target, double end, tobi_e
     tobi_tally_bodies(run, sim->info.dt);
     tobi_tally_solids(run, sim->info.dt);
     tobi_tally_add(&run->total, &sim->info);
+    tobi_works_add(run, sim->info.dt);
     TOBI_TRY(tobi_lines_write(run, start, err));
     TOBI_TRY(tobi_joints_write(run, start, err));
     return tobi_tables_write_probes(run, start, err);
@@ -352,6 +354,7 @@ void tobi_run_free(tobi_run *run)
     tobi_trouble_free(run);
     free(run->body_since);
     free(run->solid_since);
+    tobi_works_free(run);
     free(run->aside);
     free(run->sensor);
     free(run->resolved);

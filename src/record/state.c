@@ -150,13 +150,14 @@ tobi_status tobi_state_save(tobi_run *run, tobi_error *err)
 {
     int64_t step = tobi_world_info(run->world)->step;
     json_t *json =
-        json_pack("{s:I, s:f, s:I, s:o, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o}", "step", (json_int_t)step,
-                  "time", tobi_world_time(run->world), "outputs", (json_int_t)run->outputs, "outputs_aside",
-                  tobi_record_times_to_json(run), "wall_s",
+        json_pack("{s:I, s:f, s:I, s:o, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "step",
+                  (json_int_t)step, "time", tobi_world_time(run->world), "outputs",
+                  (json_int_t)run->outputs, "outputs_aside", tobi_record_times_to_json(run), "wall_s",
                   run->wall + tobi_record_clock() - run->begun, "step_wall_s", run->step_wall,
                   "particle_steps", run->particle_steps, "since_output", tally_to_json(&run->since),
                   "total", tally_to_json(&run->total), "bodies_since_output", bodies_to_json(run),
-                  "solids_since_output", solids_to_json(run), "sensors", tobi_probes_to_json(run));
+                  "solids_since_output", solids_to_json(run), "sensors", tobi_probes_to_json(run), "works",
+                  tobi_works_to_json(run));
     char *companion = checkpoint_path(run, step, "json"), *state = checkpoint_path(run, step, "h5");
     tobi_status status = write_json(companion, json, err);
     if (status == TOBI_OK) status = sync_files(run, err);
@@ -181,18 +182,19 @@ static tobi_status read_companion(tobi_run *run, const char *path, tobi_error *e
     size_t size;
     tobi_plain_read(path, "checkpoint", COMPANION_LIMIT, &text, &size, NULL);
     json_t *json = text ? json_loadb(text, size, 0, NULL) : NULL;
-    json_t *since = NULL, *total = NULL, *bodies = NULL, *solids = NULL, *sensors = NULL, *aside = NULL;
+    json_t *since = NULL, *total = NULL, *bodies = NULL, *solids = NULL, *sensors = NULL, *aside = NULL,
+           *works = NULL;
     json_int_t outputs = 0;
     double time = NAN;
     bool good =
-        json_unpack(json, "{s:F, s:I, s?o, s:F, s:F, s:F, s:o, s:o, s:o, s?o, s?o}", "time", &time,
+        json_unpack(json, "{s:F, s:I, s?o, s:F, s:F, s:F, s:o, s:o, s:o, s?o, s?o, s?o}", "time", &time,
                     "outputs", &outputs, "outputs_aside", &aside, "wall_s", &run->wall, "step_wall_s",
                     &run->step_wall, "particle_steps", &run->particle_steps, "since_output", &since, "total",
                     &total, "bodies_since_output", &bodies, "solids_since_output", &solids, "sensors",
-                    &sensors) == 0;
+                    &sensors, "works", &works) == 0;
     good = good && tally_from_json(since, &run->since) && tally_from_json(total, &run->total) &&
            bodies_from_json(bodies, run) && solids_from_json(solids, run) &&
-           tobi_record_times_from_json(aside, run) &&
+           tobi_record_times_from_json(aside, run) && tobi_works_from_json(works, run) &&
            tobi_probes_from_json(sensors, run);
     run->outputs = outputs;
     json_decref(json);

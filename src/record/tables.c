@@ -175,6 +175,9 @@ static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *e
         tobi_body_info b;
         TOBI_TRY(tobi_world_body(run->world, k, &b));
         const tobi_body_tally m = mean_of_body(&run->body_since[k]);
+        const double *work = run->works.body[k];
+        tobi_body_energy e;
+        TOBI_TRY(tobi_world_body_energy(run->world, k, &e));
         tobi_csv_add_real(run->bodies, tobi_world_time(run->world));
         tobi_csv_add_text(run->bodies, tobi_world_body_name(run->world, k));
 #define B(name, unit, value, doc) tobi_csv_add_real(run->bodies, value);
@@ -207,8 +210,10 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
 {
     const tobi_step_info *i = tobi_world_info(run->world);
     const tobi_tally *s = &run->since;
+    tobi_energy energy, *e = &energy;
     const tobi_pieces none = { 0 }, *pieces = &none;
     if (tobi_world_solid_count(run->world) > 0) TOBI_TRY(tobi_world_pieces(run->world, &pieces, err));
+    TOBI_TRY(tobi_world_energy(run->world, e));
     TOBI_TRY(take_bodies(run, &snapshot->bodies, err));
     TOBI_TRY(take_solids(run, &snapshot->solids, err));
 #define H(name, unit, kind, value, doc) tobi_csv_add_##kind(run->history, value);

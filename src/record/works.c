@@ -1,0 +1,73 @@
+/* Work since the start of a run: the power of each step times its length. It is kept beside the world, which
+   needs it for nothing. Drawback: a program that steps a world without a run sums up by itself. */
+#include "record/record.h"
+#include "world/energies.h"
+#include "world/world.h"
+#include <jansson.h>
+#include <stdlib.h>
+
+bool tobi_works_open(tobi_run *run)
+{
+    run->works.body = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->works.body);
+    run->works.joint = calloc((size_t)tobi_world_joint_count(run->world) + 1, sizeof *run->works.joint);
+    return run->works.body && run->works.joint;
+}
+
+void tobi_works_free(tobi_run *run)
+{
+    free(run->works.body);
+    free(run->works.joint);
+}
+
+void tobi_works_add(tobi_run *run, double dt)
+{
+    tobi_works *w = &run->works;
+    tobi_joint_info joint;
+    for (int k = 0; k < tobi_world_body_count(run->world); k++)
+        for (int by = 0; by < 2; by++) w->body[k][by] += dt*run->world->sim.bodies[k].power[by];
+    for (int k = 0; tobi_world_joint(run->world, k, &joint); k++) w->joint[k] += dt*joint.power;
+    w->lines += dt*tobi_energy_line_power(run->world);
+}
+
+double tobi_works_motions(const tobi_run *run)
+{
+    double sum = 0;
+    for (int k = 0; k < tobi_world_body_count(run->world); k++)
+        if (run->world->sim.bodies[k].rigid.kind == TOBI_PRESCRIBED) sum -= run->works.body[k][0];
+    return sum;
+}
+
+double tobi_works_joints(const tobi_run *run)
+{
+    double sum = 0;
+    for (int k = 0; k < tobi_world_joint_count(run->world); k++) sum += run->works.joint[k];
+    return sum;
+}
+
+json_t *tobi_works_to_json(const tobi_run *run)
+{
+    json_t *bodies = json_array(), *joints = json_array();
+    for (int k = 0; k < tobi_world_body_count(run->world); k++)
+        json_array_append_new(bodies, json_pack("[f, f]", run->works.body[k][0], run->works.body[k][1]));
+    for (int k = 0; k < tobi_world_joint_count(run->world); k++)
+        json_array_append_new(joints, json_real(run->works.joint[k]));
+    return json_pack("{s:o, s:o, s:f}", "bodies", bodies, "joints", joints, "lines", run->works.lines);
+}
+
+bool tobi_works_from_json(const json_t *json, tobi_run *run)
+{
+    const size_t bodies = (size_t)tobi_world_body_count(run->world),
+                 joints = (size_t)tobi_world_joint_count(run->world);
+    const json_t *of_bodies = json_object_get(json, "bodies"), *of_joints = json_object_get(json, "joints"),
+                 *lines = json_object_get(json, "lines");
+    if (!json) return true;
+    if (json_array_size(of_bodies) != bodies || json_array_size(of_joints) != joints) return false;
+    if (!json_is_number(lines)) return false;
+    run->works.lines = json_number_value(lines);
+    for (size_t k = 0; k < bodies; k++)
+        for (size_t by = 0; by < 2; by++)
+            run->works.body[k][by] = json_number_value(json_array_get(json_array_get(of_bodies, k), by));
+    for (size_t k = 0; k < joints; k++)
+        run->works.joint[k] = json_number_value(json_array_get(of_joints, k));
+    return true;
+}
