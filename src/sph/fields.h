@@ -65,13 +65,17 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
     X(tobi_float4, TOBI_F32, 4, viscous_inverse, SPH_VISCOUS, SPH_NEED_IMPLICIT, "m3/kg", \
       "of the diagonal") \
     X(tobi_float4, TOBI_F32, 4, viscous_turning, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1", \
-      "J of viscosity.md, eq. (2): xx, yy, zz, xy") \
+      "inverse of J of viscosity.md, eq. (2): xx, yy, zz, xy") \
     X(tobi_float4, TOBI_F32, 4, viscous_lack, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1", \
-      "J: yz, zx; z: r of eq. (3b); w: 1/sum of V F x^2") \
+      "the same: yz, zx; z: r of eq. (3b); w: s of eq. (2c)") \
+    X(tobi_float4, TOBI_F32, 4, viscous_fit, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1", \
+      "m^(1/2) A of viscosity.md, eq. (2b), scaled: xx, yy, zz, xy") \
+    X(tobi_float4, TOBI_F32, 4, viscous_fit_shear, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1", \
+      "the same: yz, zx") \
     X(tobi_float4, TOBI_F32, 4, viscous_spread, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1/s", \
-      "E of viscosity.md, eq. (2b): xx, yy, zz; w: y of the operand, m/s") \
+      "s beta E of viscosity.md, eq. (2b): xx, yy, zz; w: y of the operand, m/s") \
     X(tobi_float4, TOBI_F32, 4, viscous_slant, SPH_VISCOUS, SPH_NEED_IMPLICIT, "1/s", \
-      "E: xy, yz, zx; w: z of the operand, m/s") \
+      "the same: xy, yz, zx; w: z of the operand, m/s") \
     X(tobi_float4, TOBI_F32, 4, apparent,     TOBI_SCRATCH, SPH_NEED_APPARENT, "Pa s", \
       "x: viscosity at the shear rate y, 1/s, eq. (6) of viscosity.md") \
     X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "at a free surface 1; sparse: 2") \

@@ -60,7 +60,8 @@ static void bind_stage(sph_view *v, const sph_fields *f)
     v->moment = f->moment; v->roughness = f->roughness; v->target_divergence = f->target_divergence;
     v->viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
                                     f->viscous_direction, f->viscous_product, f->viscous_inverse,
-                                    f->viscous_turning, f->viscous_lack, f->viscous_spread, f->viscous_slant,
+                                    f->viscous_turning, f->viscous_lack, f->viscous_fit,
+                                    f->viscous_fit_shear, f->viscous_spread, f->viscous_slant,
                                     NULL, 0, f->apparent};
 }
 

@@ -133,14 +133,13 @@ TOBI_FN tobi_float4 sph_matrix_times(const sph_matrix *m, tobi_float4 x)
     return out;
 }
 
-/* x with m x = b, m positive: in double, as m may be close to singular. */
-TOBI_FN tobi_float4 sph_solve(const sph_matrix *m, tobi_float4 b)
+/* m^-1, m positive: in double, as m may be close to singular. */
+TOBI_FN sph_matrix sph_inverse(const sph_matrix *m)
 {
     const double xx = m->xx, yy = m->yy, zz = m->zz, xy = m->xy, yz = m->yz, zx = m->zx;
     const double a = yy*zz - yz*yz, d = zx*yz - xy*zz, e = xy*yz - zx*yy, k = 1/(xx*a + xy*d + zx*e);
-    const double f = xx*zz - zx*zx, g = xy*zx - xx*yz, h = xx*yy - xy*xy;
-    return (tobi_float4){(float)(k*(a*b.x + d*b.y + e*b.z)), (float)(k*(d*b.x + f*b.y + g*b.z)),
-                         (float)(k*(e*b.x + g*b.y + h*b.z)), 0};
+    return (sph_matrix){(float)(k*a), (float)(k*(xx*zz - zx*zx)), (float)(k*(xx*yy - xy*xy)), (float)(k*d),
+                        (float)(k*(xy*zx - xx*yz)), (float)(k*e)};
 }
 
 /* The symmetric part of (I - w n n^T) M^-1, eq. (7c), with w what M lacks along the wall's normal; b = M^-1.

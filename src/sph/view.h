@@ -18,7 +18,7 @@ enum { SPH_SPARSE = 2 };
 typedef struct sph_viscous_fields {
     tobi_float4 *TOBI_RESTRICT x, *TOBI_RESTRICT expected, *TOBI_RESTRICT residual, *TOBI_RESTRICT direction,
                 *TOBI_RESTRICT product, *TOBI_RESTRICT inverse, *TOBI_RESTRICT turning, *TOBI_RESTRICT lack,
-                *TOBI_RESTRICT spread, *TOBI_RESTRICT slant;
+                *TOBI_RESTRICT fit, *TOBI_RESTRICT fit_shear, *TOBI_RESTRICT spread, *TOBI_RESTRICT slant;
     const tobi_float4 *operand;      /* x or direction: what the sums are over     */
     float moving;                    /* 1: walls move as they do, 0: they rest     */
     tobi_float4 *TOBI_RESTRICT apparent;     /* x: Pa s, y: 1/s; NULL: all are Newtonian */

@@ -99,7 +99,8 @@ TOBI_FN float sph_viscous_lacks(const sph_matrix *m, const sph_matrix *n, int di
     return square > 1e-4f*walls*walls ? fminf(fmaxf(-both/square, 0), 2) : 1;
 }
 
-/* lack.z = r, eq. (3b); lack.w = s, eq. (2c), 0 without neighbours; turning = J with both. */
+/* lack.z = r, eq. (3b); lack.w = s, eq. (2c), 0 without neighbours; turning, lack: J^-1 with both; fit: such
+   a matrix Q that s beta E of eq. (2b) is Q (Q : G), G that of sph_viscous_spin, M by J. The payload is s. */
 TOBI_FN void sph_viscous_close(const sph_view *v, int64_t i, double *totals)
 {
     const tobi_float4 j = v->viscous.turning[i], l = v->viscous.lack[i], d = v->viscous.direction[i],
@@ -110,10 +111,23 @@ TOBI_FN void sph_viscous_close(const sph_view *v, int64_t i, double *totals)
     const float r = sph_viscous_lacks(&m, &n, v->dimension), wall = r*walls, more = 2e-6f*all;
     const float whole = even + v->moment_lattice*walls*sph_viscous_lacks(&bare, &n, v->dimension);
     const float s = even > 0 ? 1/fmaxf(whole/v->dimension, SPH_VISCOUS_SPARSE) : 0;
+    const sph_matrix turning = {s*j.x + wall - r*n.xx + more, s*j.y + wall - r*n.yy + more,
+                                s*j.z + wall - r*n.zz + more, s*j.w - r*n.xy, s*l.x - r*n.yz, s*l.y - r*n.zx};
+    const float half = 0.5f*(turning.xx + turning.yy + turning.zz), mean = half/v->dimension;
+    const float unit = mean > 0 ? 1/mean : 0, least = SPH_VISCOUS_LEAST;
+    const int deep = v->dimension > 2;
+    sph_matrix fit = {unit*(half - turning.xx) + least, unit*(half - turning.yy) + least,
+                      deep ? unit*(half - turning.zz) + least : 1,
+                      -unit*turning.xy, -unit*turning.yz, -unit*turning.zx}, turn = {0};
     (void)totals;
-    v->viscous.turning[i] = (tobi_float4){s*j.x + wall - r*n.xx + more, s*j.y + wall - r*n.yy + more,
-                                          s*j.z + wall - r*n.zz + more, s*j.w - r*n.xy};
-    v->viscous.lack[i] = (tobi_float4){s*l.x - r*n.yz, s*l.y - r*n.zx, r, s};
+    const float size = s > 0 && sph_invert(&fit, &fit) ?
+                       s*(1 + least)*sqrtf(SPH_VISCOUS_BULK*unit/v->dimension) : 0;
+    if (s > 0) turn = sph_inverse(&turning);
+    v->viscous.turning[i] = (tobi_float4){turn.xx, turn.yy, turn.zz, turn.xy};
+    v->viscous.lack[i] = (tobi_float4){turn.yz, turn.zx, r, s};
+    v->record[i].w = s;
+    v->viscous.fit[i] = (tobi_float4){size*fit.xx, size*fit.yy, deep ? size*fit.zz : 0, size*fit.xy};
+    v->viscous.fit_shear[i] = (tobi_float4){size*fit.yz, size*fit.zx, 0, 0};
 }
 
 /* What `turn` is as a rotation around i: J^-1 turn. */
@@ -121,23 +135,7 @@ TOBI_FN tobi_float4 sph_viscous_turned(const sph_view *v, int64_t i, tobi_float4
 {
     const tobi_float4 j = v->viscous.turning[i], l = v->viscous.lack[i];
     const sph_matrix m = {j.x, j.y, j.z, j.w, l.x, l.y};
-    return l.w > 0 ? sph_solve(&m, turn) : (tobi_float4){0, 0, 0, 0};
-}
-
-/* s E of eq. (2b), M by J; g: rows of the sum of 4 F mu_ij (w_j - w_i) x x_ji. */
-TOBI_FN sph_matrix sph_viscous_expansion(const sph_view *v, int64_t i, const tobi_float4 g[3])
-{
-    const tobi_float4 j = v->viscous.turning[i], o = v->viscous.lack[i];
-    const float half = 0.5f*(j.x + j.y + j.z), mean = half/v->dimension + 1e-30f;
-    const float more = SPH_VISCOUS_LEAST*mean, xx = half - j.x + more, yy = half - j.y + more,
-                zz = v->dimension > 2 ? half - j.z + more : 1, xy = -j.w, yz = -o.x, zx = -o.y;
-    const float a = yy*zz - yz*yz, d = zx*yz - xy*zz, e = xy*yz - zx*yy;
-    const float f = xx*zz - zx*zx, h = xy*zx - xx*yz, l = v->dimension > 2 ? xx*yy - xy*xy : 0;
-    const float all = a*g[0].x + f*g[1].y + l*g[2].z + d*(g[0].y + g[1].x) + h*(g[1].z + g[2].y) +
-                      e*(g[2].x + g[0].z);
-    const float one = o.w*(mean + more)/(xx*a + xy*d + zx*e);
-    const float q = one*one*sph_viscous_share(v, i)*all/(mean*v->dimension);
-    return (sph_matrix){q*a, q*f, q*l, q*d, q*h, q*e};
+    return sph_matrix_times(&m, turn);
 }
 
 /* accel = the rotation that takes most from the differences of velocity around i, eq. (2), (3b), but for what
@@ -180,11 +178,12 @@ TOBI_FN void sph_viscous_spin_finish(const sph_view *v, int64_t i, sph_viscous_s
         turn[e] -= b*(v->viscous.moving*wall->velocity[d] - (&w.x)[d]);
     }
     const tobi_float4 spin = sph_viscous_turned(v, i, (tobi_float4){turn[0], turn[1], turn[2], 0});
-    const sph_matrix e = sph_viscous_expansion(v, i, g);
-    const float beta = SPH_VISCOUS_BULK;
+    const tobi_float4 q = v->viscous.fit[i], p = v->viscous.fit_shear[i];
+    const float all = k*(q.x*g[0].x + q.y*g[1].y + q.z*g[2].z + q.w*(g[0].y + g[1].x) +
+                         p.x*(g[1].z + g[2].y) + p.y*(g[2].x + g[0].z));
     v->accel[i] = (tobi_float4){spin.x, spin.y, spin.z, w.x};
-    v->viscous.spread[i] = (tobi_float4){beta*e.xx, beta*e.yy, beta*e.zz, w.y};
-    v->viscous.slant[i] = (tobi_float4){beta*e.xy, beta*e.yz, beta*e.zx, w.z};
+    v->viscous.spread[i] = (tobi_float4){all*q.x, all*q.y, all*q.z, w.y};
+    v->viscous.slant[i] = (tobi_float4){all*q.w, all*p.x, all*p.y, w.z};
 }
 
 /* sum over j of 4 V F mu_ij ((s_i + s_j)/2 (w_j - w_i) - (s_i Omega_i + s_j Omega_j)/2 x x_ji +
@@ -211,11 +210,8 @@ TOBI_FN void sph_viscous_add(const sph_view *v, int64_t i, const tobi_neighbors 
     lane_load_float4(v->accel, n->j, &ox, &oy, &oz, &x);
     lane_load_float4(v->viscous.spread, n->j, &xx, &yy, &zz, &y);
     lane_load_float4(v->viscous.slant, n->j, &xy, &yz, &zx, &z);
-    lane theirs, none[3];
-    lane_load_float4(v->viscous.lack, n->j, &none[0], &none[1], &none[2], &theirs);
-    theirs = 0.5f*theirs;
     const float own = 0.5f*a->scale;
-    const lane both = theirs + own;
+    const lane theirs = 0.5f*n->w, both = theirs + own;
     ox = theirs*ox + own*a->turn.x; oy = theirs*oy + own*a->turn.y; oz = theirs*oz + own*a->turn.z;
     xx += a->spread.x; yy += a->spread.y; zz += a->spread.z;
     xy += a->slant.x; yz += a->slant.y; zx += a->slant.z;
@@ -247,29 +243,43 @@ TOBI_FN void sph_viscous_planes(const sph_view *v, int64_t i, tobi_float4 w, flo
 }
 
 /* residual = rho (v - x) + dt (viscous force of x), v the velocity that all other forces make; inverse = 1 /
-   diagonal. Buffers of inlets have given velocities: no row. Bodies add theirs. */
-typedef sph_viscous_acc sph_viscous_rows_acc;
-TOBI_FN void sph_viscous_rows_start(const sph_view *v, int64_t i, sph_viscous_acc *a)
+   diagonal, without the rotations, and with the viscosity of i for that of its neighbours in E. Buffers of
+   inlets have given velocities: no row. Bodies add theirs. own: squares of fit_j x; x, y, z: sum of x. */
+typedef struct sph_viscous_rows_acc { sph_viscous_acc sums; lane x, y, z, own[3]; } sph_viscous_rows_acc;
+TOBI_FN void sph_viscous_rows_start(const sph_view *v, int64_t i, sph_viscous_rows_acc *a)
 {
-    sph_viscous_begin(v, i, a);
+    sph_viscous_begin(v, i, &a->sums);
+    a->x = a->y = a->z = a->own[0] = a->own[1] = a->own[2] = lane_set(0);
 }
-TOBI_FN void sph_viscous_rows_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_viscous_acc *a,
-                                   const int shape)
+TOBI_FN void sph_viscous_rows_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
+                                   sph_viscous_rows_acc *a, const int shape)
 {
-    sph_viscous_add(v, i, n, a, shape);
+    const lane f = sph_viscous_weight(v, n, a->sums.mu, shape), dx = f*n->dx, dy = f*n->dy, dz = f*n->dz;
+    lane xx, yy, zz, xy, yz, zx, none[2];
+    sph_viscous_add(v, i, n, &a->sums, shape);
+    lane_load_float4(v->viscous.fit, n->j, &xx, &yy, &zz, &xy);
+    lane_load_float4(v->viscous.fit_shear, n->j, &yz, &zx, &none[0], &none[1]);
+    const lane x = xx*dx + xy*dy + zx*dz, y = xy*dx + yy*dy + yz*dz, z = zx*dx + yz*dy + zz*dz;
+    a->own[0] += x*x; a->own[1] += y*y; a->own[2] += z*z;
+    a->x += dx; a->y += dy; a->z += dz;
 }
-TOBI_FN void sph_viscous_rows_finish(const sph_view *v, int64_t i, sph_viscous_acc *a, double *totals)
+TOBI_FN void sph_viscous_rows_finish(const sph_view *v, int64_t i, sph_viscous_rows_acc *a, double *totals)
 {
-    const tobi_float4 sum = lane_sum4(a->x, a->y, a->z, a->all), u = v->velocity[i],
-                      x = v->viscous.operand[i];
-    const float rho = 1/v->inverse_density[v->fluid[i]];
+    const tobi_float4 sum = lane_sum4(a->sums.x, a->sums.y, a->sums.z, a->sums.all), u = v->velocity[i],
+                      x = v->viscous.operand[i], q = v->viscous.fit[i], p = v->viscous.fit_shear[i],
+                      side = lane_sum4(a->x, a->y, a->z, lane_set(0)),
+                      more = lane_sum4(a->own[0], a->own[1], a->own[2], lane_set(0));
+    const sph_matrix fit = {q.x, q.y, q.z, q.w, p.x, p.y};
+    const tobi_float4 edge = sph_matrix_times(&fit, side);
+    const float rho = 1/v->inverse_density[v->fluid[i]], k = sph_viscous_share(v, i);
     float force[3], own[3];
     tobi_float4 r = {0, 0, 0, 0}, inverse = {0, 0, 0, 0};
     (void)totals;
     sph_viscous_planes(v, i, x, force, own);
     for (int c = 0; c < 3 && !sph_driven(v, i); c++) {
+        const float wide = k*((&more.x)[c] + (&edge.x)[c]*(&edge.x)[c]);
         (&r.x)[c] = rho*((&u.x)[c] - (&x.x)[c]) + v->dt*(v->slope*(&sum.x)[c] + force[c]);
-        (&inverse.x)[c] = 1/(rho + v->dt*(v->slope*sum.w + own[c]));
+        (&inverse.x)[c] = 1/(rho + v->dt*(v->slope*(sum.w + wide) + own[c]));
     }
     v->viscous.residual[i] = r;
     v->viscous.inverse[i] = inverse;

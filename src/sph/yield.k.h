@@ -63,8 +63,10 @@ TOBI_FN void sph_apparent(const sph_view *v, int64_t i, double *totals)
     const int f = v->fluid[i];
     const float least = SPH_STRAIN_LEAST*(a.x + a.y + a.z) + 1e-30f, creep = v->creep_rate[f];
     const sph_matrix m = {a.x + least, a.y + least, a.z + (v->dimension > 2 ? least : 1), a.w, b.x, b.y};
-    const tobi_float4 x = sph_solve(&m, v->viscous.direction[i]), y = sph_solve(&m, v->viscous.product[i]),
-                      z = sph_solve(&m, v->viscous.residual[i]);
+    const sph_matrix inverse = sph_inverse(&m);
+    const tobi_float4 x = sph_matrix_times(&inverse, v->viscous.direction[i]),
+                      y = sph_matrix_times(&inverse, v->viscous.product[i]),
+                      z = sph_matrix_times(&inverse, v->viscous.residual[i]);
     const float xy = x.y + y.x, yz = y.z + z.y, zx = z.x + x.z, expansion = (x.x + y.y + z.z)/3;
     const float xx = x.x - expansion, yy = y.y - expansion, zz = z.z - expansion;
     const float rate = 2*(xx*xx + yy*yy + zz*zz) + xy*xy + yz*yz + zx*zx, faster = sqrtf(rate + creep*creep);

@@ -15,19 +15,19 @@ enum {
     VISCOUS, VISCOUS_EXPECTED = VISCOUS + 3, VISCOUS_RESIDUAL = VISCOUS_EXPECTED + 3,
     VISCOUS_DIRECTION = VISCOUS_RESIDUAL + 3, VISCOUS_PRODUCT = VISCOUS_DIRECTION + 3,
     VISCOUS_INVERSE = VISCOUS_PRODUCT + 3, TURNING = VISCOUS_INVERSE + 3, LACK = TURNING + 4,
-    APPARENT = LACK + 4, SHEAR_RATE, ROUGH, SPREAD = ROUGH + 3, SLANT = SPREAD + 4, COLUMNS = SLANT + 4
+    APPARENT = LACK + 4, SHEAR_RATE, ROUGH, SPREAD = ROUGH + 3, SLANT = SPREAD + 4, FIT = SLANT + 4,
+    COLUMNS = FIT + 6
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
     "x", "y", "z", "payload", "vx", "vy", "vz", "ax", "ay", "az", "band", "nx", "ny", "nz",
     "normal band", "Gx", "Gy", "Gz", "flux", "capillary", "density", "diagonal", "precondition",
-    "residual", "product", "delta", "pressure", "surface", "wetness",
-    "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx", "walled",
-    "cx", "cy", "cz", "mean pressure", "drop", "target_divergence", "damped",
+    "residual", "product", "delta", "pressure", "surface", "wetness", "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx",
+    "walled", "cx", "cy", "cz", "mean pressure", "drop", "target_divergence", "damped",
     "viscous x", "viscous y", "viscous z", "expected x", "expected y", "expected z",
     "viscous rx", "viscous ry", "viscous rz", "viscous qx", "viscous qy", "viscous qz",
     "viscous Aqx", "viscous Aqy", "viscous Aqz", "viscous Mx", "viscous My", "viscous Mz",
-    "Jxx", "Jyy", "Jzz", "Jxy", "Jyz", "Jzx", "wall's lack", "1/trace",
+    "Jxx", "Jyy", "Jzz", "Jxy", "Jyz", "Jzx", "wall's lack", "viscous scale",
     "apparent viscosity", "shear rate", "roughness x", "roughness y", "roughness z"
 };
 

@@ -117,9 +117,9 @@ static void rig_bind_viscosity(rig *g, const double rho[2], const double nu[2])
     g->view.dynamic = (float)(rho[0]*nu[0]);
     g->view.viscous = (sph_viscous_fields){f->viscous_velocity, f->viscous_expected, f->viscous_residual,
                                          f->viscous_direction, f->viscous_product, f->viscous_inverse,
-                                         f->viscous_turning, f->viscous_lack, f->viscous_spread,
-                                         f->viscous_slant, f->viscous_velocity, 1,
-                                         f->apparent};
+                                         f->viscous_turning, f->viscous_lack, f->viscous_fit,
+                                         f->viscous_fit_shear, f->viscous_spread, f->viscous_slant,
+                                         f->viscous_velocity, 1, f->apparent};
     for (int k = 0; k < 2; k++) {
         const double yield = 0.1 + 0.3*k, index = k == 0 ? 0.6 : 1, creep = 2, turbulent = 0.3 - 0.2*k;
         g->view.yield_stress[k] = (float)yield; g->view.flow_index[k] = (float)index;
@@ -285,6 +285,8 @@ static void rig_get(const rig *g, row *s)
         for (int a = 0; a < 4; a++) s[i][LACK + a] = (&f->viscous_lack[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][SPREAD + a] = (&f->viscous_spread[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][SLANT + a] = (&f->viscous_slant[i].x)[a];
+        for (int a = 0; a < 4; a++) s[i][FIT + a] = (&f->viscous_fit[i].x)[a];
+        for (int a = 0; a < 2; a++) s[i][FIT + 4 + a] = (&f->viscous_fit_shear[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][NORMAL + a] = (&f->normal[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][TENSOR + a] = (&f->stretch[i].x)[a];
         for (int a = 0; a < 3; a++) s[i][TENSOR + 4 + a] = (&f->shear[i].x)[a];
@@ -327,6 +329,8 @@ static void rig_set(rig *g, const row *s)
         for (int a = 0; a < 4; a++) (&f->viscous_lack[i].x)[a] = (float)s[i][LACK + a];
         for (int a = 0; a < 4; a++) (&f->viscous_spread[i].x)[a] = (float)s[i][SPREAD + a];
         for (int a = 0; a < 4; a++) (&f->viscous_slant[i].x)[a] = (float)s[i][SLANT + a];
+        for (int a = 0; a < 4; a++) (&f->viscous_fit[i].x)[a] = (float)s[i][FIT + a];
+        for (int a = 0; a < 2; a++) (&f->viscous_fit_shear[i].x)[a] = (float)s[i][FIT + 4 + a];
         for (int a = 0; a < 4; a++) (&f->normal[i].x)[a] = (float)s[i][NORMAL + a];
         for (int a = 0; a < 4; a++) (&f->stretch[i].x)[a] = (float)s[i][TENSOR + a];
         for (int a = 0; a < 3; a++) (&f->shear[i].x)[a] = (float)s[i][TENSOR + 4 + a];

@@ -142,13 +142,38 @@ static double find_lacks(const oracle *o, const double m[6], const double n[6])
     return square > 1e-4*walls*walls ? fmin(fmax(both/square, 0), 2) : 1;
 }
 
-/* r, s of eq. (2c), J with both. */
+static void eliminate(double m[3][4], double x[3])
+{
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            for (int c = 3; a != b && c >= a; c--) m[b][c] -= m[b][a]/m[a][a]*m[a][c];
+    for (int a = 0; a < 3; a++) x[a] = m[a][3]/m[a][a];
+}
+
+/* Where row a, column b stands in xx, yy, zz, xy, yz, zx. */
+static const int six[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+
+/* scale m^-1, a column at a time. */
+static void invert6(const double m[6], double scale, double out[6])
+{
+    for (int c = 0; c < 3; c++) {
+        double rows[3][4], column[3];
+        for (int k = 0; k < 3; k++) {
+            for (int l = 0; l < 3; l++) rows[k][l] = m[six[k][l]];
+            rows[k][3] = k == c ? scale : 0;
+        }
+        eliminate(rows, column);
+        for (int k = 0; k < 3; k++) out[six[k][c]] = column[k];
+    }
+}
+
+/* r, s of eq. (2c), the inverse of J with both; the root of beta s m/dim times A of (2b). */
 static void oracle_viscous_close(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
     for (int i = 0; i < o->count; i++) {
         const double *j = &in[i][TURNING], trace = 0.5*(j[0] + j[1] + j[2]);
-        double n[6], m[6], bare[6];
+        double n[6], m[6], bare[6], turning[6], fitted[6];
         for (int c = 0; c < 3; c++) {
             n[c] = in[i][VISCOUS_DIRECTION + c];
             n[3 + c] = in[i][VISCOUS_PRODUCT + c];
@@ -160,57 +185,36 @@ static void oracle_viscous_close(const oracle *o, const row *in, row *out, doubl
         const double whole = (even + o->moment_lattice*find_lacks(o, bare, n)*walls)/o->dimension;
         const double scale = even > 0 ? 1/fmax(whole, 0.4) : 0;
         for (int c = 0; c < 6; c++)
-            out[i][TURNING + c] = scale*j[c] + (c < 3 ? r*walls + 2e-6*trace : 0) - r*n[c];
-        out[i][LACK + 2] = r;
-        out[i][LACK + 3] = scale;
-    }
-}
-
-static void eliminate(double m[3][4], double x[3])
-{
-    for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++)
-            for (int c = 3; a != b && c >= a; c--) m[b][c] -= m[b][a]/m[a][a]*m[a][c];
-    for (int a = 0; a < 3; a++) x[a] = m[a][3]/m[a][a];
-}
-
-/* A of eq. (2b): (1 + delta) (M + delta m)^-1, a column at a time; m: what M is times s, of J. */
-static void make_equal(const oracle *o, double m[3][3], double mean, double a[3][3])
-{
-    for (int c = 0; c < 3; c++) {
-        double rows[3][4], column[3];
-        for (int k = 0; k < 3; k++) {
-            for (int l = 0; l < 3; l++) rows[k][l] = m[k][l] + (k == l ? 0.3*mean : 0);
-            rows[k][3] = k == c && k < o->dimension ? 1.3 : 0;
+            turning[c] = scale*j[c] + (c < 3 ? r*walls + 2e-6*trace : 0) - r*n[c];
+        const double half = 0.5*(turning[0] + turning[1] + turning[2]), mean = half/o->dimension;
+        for (int c = 0; c < 6; c++) fitted[c] = (c < 3 ? half + 0.3*mean : 0) - turning[c];
+        if (o->dimension < 3) fitted[2] = 1;
+        memset(&out[i][TURNING], 0, sizeof turning);
+        memset(&out[i][FIT], 0, sizeof fitted);
+        if (scale > 0) {
+            invert6(turning, 1, &out[i][TURNING]);
+            invert6(fitted, 1.3*scale*sqrt(8*mean/o->dimension), &out[i][FIT]);
         }
-        if (o->dimension < 3) rows[2][2] = 1;
-        eliminate(rows, column);
-        for (int k = 0; k < 3; k++) a[k][c] = column[k];
+        if (o->dimension < 3) out[i][FIT + 2] = 0;
+        out[i][LACK + 2] = r;
+        out[i][LACK + 3] = out[i][PAYLOAD] = scale;
     }
 }
 
-/* Eq. (2), (2b), (3b), by elimination. */
+/* Eq. (2), (2b), (3b). */
 static void oracle_viscous_spin(const oracle *o, const row *in, row *out, double *t)
 {
-    static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
     (void)t;
     for (int i = 0; i < o->count; i++) {
-        const double share = 1/(4*viscosity_of(o, in, i)), *w = &in[i][VISCOUS], s = in[i][LACK + 3];
-        double m[3][4] = {{0}}, moments[3][3] = {{0}}, equal[3][3], alpha = 0;
+        const double share = 1/(4*viscosity_of(o, in, i)), *w = &in[i][VISCOUS], *fit = &in[i][FIT];
+        double sum[3] = {0}, alpha = 0;
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             double difference[3], turn[3];
             const double f = share*pair_weight(o, in, i, j, r);
             for (int c = 0; c < 3; c++) difference[c] = w[c] - in[j][VISCOUS + c];
             cross(x, difference, turn);
-            for (int c = 0; c < 3; c++) m[c][3] += s*f*turn[c];
-        }
-        const double *j6 = &in[i][TURNING], half = 0.5*(j6[0] + j6[1] + j6[2]), mean = half/o->dimension;
-        for (int k = 0; k < 9; k++) moments[k/3][k%3] = (k%4 ? 0 : half) - j6[place[k/3][k%3]];
-        make_equal(o, moments, mean, equal);
-        EACH_NEIGHBOUR(o, in, i, j, x, r) {
-            const double f = share*pair_weight(o, in, i, j, r);
-            for (int k = 0; k < 9; k++)
-                alpha += f*(w[k/3] - in[j][VISCOUS + k/3])*equal[k/3][k%3]*x[k%3]/o->dimension;
+            for (int c = 0; c < 3; c++) sum[c] += in[i][LACK + 3]*f*turn[c];
+            for (int k = 0; k < 9; k++) alpha += f*difference[k/3]*fit[six[k/3][k%3]]*x[k%3];
         }
         for (int k = 0; k < o->plane_count; k++) {
             double sigma, slip[3], pulled[3], normal[3] = {0};
@@ -218,15 +222,13 @@ static void oracle_viscous_spin(const oracle *o, const row *in, row *out, double
             normal[o->plane[k].axis] = o->plane[k].sign;
             for (int c = 0; c < 3; c++) slip[c] = (double)o->plane[k].velocity[c] - w[c];
             cross(normal, slip, pulled);
-            for (int c = 0; c < 3; c++) m[c][3] -= in[i][LACK + 2]*sigma*pulled[c];
+            for (int c = 0; c < 3; c++) sum[c] -= in[i][LACK + 2]*sigma*pulled[c];
         }
-        for (int a = 0; a < 3; a++)
-            for (int b = 0; b < 3; b++) m[a][b] = in[i][TURNING + place[a][b]];
-        eliminate(m, &out[i][ACC]);
-        for (int a = 0; a < 3 && !(s > 0); a++) out[i][ACC + a] = 0;
         for (int a = 0; a < 3; a++) {
-            out[i][SPREAD + a] = 8*s*s*alpha*mean*equal[a][a];
-            out[i][SLANT + a] = 8*s*s*alpha*mean*equal[a][(a + 1)%3];
+            out[i][ACC + a] = 0;
+            for (int b = 0; b < 3; b++) out[i][ACC + a] += in[i][TURNING + six[a][b]]*sum[b];
+            out[i][SPREAD + a] = alpha*fit[a];
+            out[i][SLANT + a] = alpha*fit[3 + a];
         }
         out[i][BAND] = w[0]; out[i][SPREAD + 3] = w[1]; out[i][SLANT + 3] = w[2];
     }
@@ -252,26 +254,42 @@ static void plane_friction(const oracle *o, const row *in, int i, double force[3
     }
 }
 
-/* Eq. (1), (3): the force per volume on i, w any field and accel its rotations; and what that is of w_i. */
+/* Eq. (1), (3): the force per volume on i, w any field and accel its rotations; and what (3) and the first
+   term of (1) are of w_i. */
 static void viscous_force(const oracle *o, const row *in, int i, double force[3], double own[3])
 {
-    static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
     for (int c = 0; c < 3; c++) force[c] = own[c] = 0;
     EACH_NEIGHBOUR(o, in, i, j, x, r) {
         double spin[3], turn[3];
-        const double f = pair_weight(o, in, i, j, r), a = 0.5*in[i][LACK + 3], b = 0.5*in[j][LACK + 3];
+        const double f = pair_weight(o, in, i, j, r), a = 0.5*in[i][LACK + 3], b = 0.5*in[j][PAYLOAD];
         for (int c = 0; c < 3; c++) spin[c] = a*in[i][ACC + c] + b*in[j][ACC + c];
         cross(spin, x, turn);
         for (int c = 0; c < 3; c++) {
             double spread = 0;
             for (int k = 0; k < 3; k++)
-                spread += (place[c][k] < 3 ? in[i][SPREAD + c] + in[j][SPREAD + c] :
-                           in[i][SLANT + place[c][k] - 3] + in[j][SLANT + place[c][k] - 3])*x[k];
+                spread += (six[c][k] < 3 ? in[i][SPREAD + c] + in[j][SPREAD + c] :
+                           in[i][SLANT + six[c][k] - 3] + in[j][SLANT + six[c][k] - 3])*x[k];
             force[c] += f*((a + b)*(in[j][VISCOUS + c] - in[i][VISCOUS + c]) + turn[c] - spread);
             own[c] += f*(a + b);
         }
     }
     plane_friction(o, in, i, force, own);
+}
+
+/* What the last term of (1) is of w_i, in direction c. */
+static double own_spread(const oracle *o, const row *in, int i, int c)
+{
+    double all = 0, sum = 0;
+    EACH_NEIGHBOUR(o, in, i, j, x, r) {
+        double their = 0;
+        for (int k = 0; k < 3; k++) {
+            const double f = pair_weight(o, in, i, j, r)*x[k];
+            their += f*in[j][FIT + six[c][k]];
+            sum += f*in[i][FIT + six[c][k]];
+        }
+        all += their*their;
+    }
+    return (all + sum*sum)/(4*viscosity_of(o, in, i));
 }
 
 static void oracle_viscous_rows(const oracle *o, const row *in, row *out, double *t)
@@ -282,7 +300,7 @@ static void oracle_viscous_rows(const oracle *o, const row *in, row *out, double
         viscous_force(o, in, i, force, own);
         for (int c = 0; c < 3; c++) {
             out[i][VISCOUS_RESIDUAL + c] = rho*(in[i][VEL + c] - in[i][VISCOUS + c]) + o->dt*force[c];
-            out[i][VISCOUS_INVERSE + c] = 1/(rho + o->dt*own[c]);
+            out[i][VISCOUS_INVERSE + c] = 1/(rho + o->dt*(own[c] + own_spread(o, in, i, c)));
         }
     }
 }
