@@ -22,8 +22,8 @@ typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
     "x", "y", "z", "payload", "vx", "vy", "vz", "ax", "ay", "az", "band", "nx", "ny", "nz",
     "normal band", "Gx", "Gy", "Gz", "flux", "capillary", "density", "diagonal", "precondition",
-    "residual", "product", "delta", "pressure", "surface", "wetness", "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx",
-    "walled", "cx", "cy", "cz", "mean pressure", "drop", "target_divergence", "damped",
+    "residual", "product", "delta", "pressure", "surface", "wetness", "Txx", "Tyy", "Tzz", "Txy", "Tyz",
+    "Tzx", "walled", "cx", "cy", "cz", "mean pressure", "drop", "target_divergence", "damped",
     "viscous x", "viscous y", "viscous z", "expected x", "expected y", "expected z",
     "viscous rx", "viscous ry", "viscous rz", "viscous qx", "viscous qy", "viscous qz",
     "viscous Aqx", "viscous Aqy", "viscous Aqz", "viscous Mx", "viscous My", "viscous Mz",
