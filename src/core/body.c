@@ -167,73 +167,18 @@ static tobi_status move_vertices(const tobi_body *b, double t, double (*out)[3],
     return TOBI_OK;
 }
 
-/* Where the material at the rest centre is and how it is turned: three short axes through the motion,
-   made orthonormal. Exact for a rigid motion. */
-static tobi_status place_frame(tobi_body *b, double t, double centre[3], double frame[3][3],
-                               tobi_error *err)
-{
-    double arm = 0.01*cbrt(fabs(b->rest.volume)), rest[4][3], now[4][3];
-    for (int k = 0; k < 4; k++)
-        for (int a = 0; a < 3; a++) rest[k][a] = b->rest.centre[a] + (k == a + 1 ? arm : 0);
-    TOBI_TRY(tobi_body_locate(b, t, 4, (const double (*)[3])rest, now, err));
-    memcpy(centre, now[0], sizeof now[0]);
-    for (int k = 0; k < 3; k++) {
-        for (int a = 0; a < 3; a++) frame[k][a] = now[k + 1][a] - now[0][a];
-        for (int j = 0; j < k; j++) {
-            double dot = 0;
-            for (int a = 0; a < 3; a++) dot += frame[k][a]*frame[j][a];
-            for (int a = 0; a < 3; a++) frame[k][a] -= dot*frame[j][a];
-        }
-        double size = sqrt(frame[k][0]*frame[k][0] + frame[k][1]*frame[k][1] + frame[k][2]*frame[k][2]);
-        for (int a = 0; a < 3; a++) frame[k][a] = size > 0 ? frame[k][a]/size : (a == k);
-    }
-    return TOBI_OK;
-}
-
-/* Quaternion w x y z of the rotation whose columns are the frame's rows (Shepperd 1978). */
-static void to_quaternion(const double f[3][3], double q[4])
-{
-    double m[3][3], trace = f[0][0] + f[1][1] + f[2][2];
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) m[r][c] = f[c][r];
-    if (trace > 0) {
-        double s = 2*sqrt(1 + trace);
-        q[0] = 0.25*s;
-        q[1] = (m[2][1] - m[1][2])/s; q[2] = (m[0][2] - m[2][0])/s; q[3] = (m[1][0] - m[0][1])/s;
-        return;
-    }
-    int i = m[0][0] > m[1][1] ? (m[0][0] > m[2][2] ? 0 : 2) : (m[1][1] > m[2][2] ? 1 : 2),
-        j = (i + 1) % 3, k = (i + 2) % 3;
-    double s = 2*sqrt(fmax(1 + m[i][i] - m[j][j] - m[k][k], 1e-300));
-    q[0] = (m[k][j] - m[j][k])/s;
-    q[1 + i] = 0.25*s;
-    q[1 + j] = (m[j][i] + m[i][j])/s;
-    q[1 + k] = (m[k][i] + m[i][k])/s;
-}
-
 tobi_status tobi_body_place_within(tobi_body *b, double t, double way, double more, tobi_error *err)
 {
     double frame[3][3];
     if (!b->motion) return TOBI_OK;
-    TOBI_TRY(place_frame(b, t + way, b->rigid.position, frame, err));
+    TOBI_TRY(tobi_body_find_frame(b, t + way, b->rigid.position, frame, err));
     vec3_sub(b->rigid.position, b->rigid.position, b->lower);
-    to_quaternion((const double (*)[3])frame, b->rigid.orientation);
+    tobi_frame_quaternion((const double (*)[3])frame, b->rigid.orientation);
     if (!b->deforms) return TOBI_OK;
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         vec3_add_scaled(b->vertex[i], b->vertex[i], more, b->vertex_velocity[i]);
     tobi_bvh_refit(b->bvh, (const double (*)[3])b->vertex);
     return TOBI_OK;
-}
-
-/* Angular velocity that turns frame `from` into `to` in dt: half the sum of axis cross products. */
-static void turn_rate(const double from[3][3], const double to[3][3], double dt, double omega[3])
-{
-    memset(omega, 0, 3*sizeof *omega);
-    for (int k = 0; k < 3; k++)
-        for (int a = 0; a < 3; a++) {
-            int b = (a + 1)%3, c = (a + 2)%3;
-            omega[a] += 0.5*(from[k][b]*to[k][c] - from[k][c]*to[k][b])/dt;
-        }
 }
 
 /* Of a body that moves by forces, by its orientation. */
@@ -277,14 +222,14 @@ tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err)
 {
     TOBI_TRY(move_vertices(b, t, b->vertex, err));
     tobi_body_update_surface(b);
-    TOBI_TRY(place_frame(b, t, b->centre, b->frame, err));
+    TOBI_TRY(tobi_body_find_frame(b, t, b->centre, b->frame, err));
     if (b->rigid.kind != TOBI_PRESCRIBED) {
         if (b->swimmer) turn_frame(b);
         tobi_body_report(b);
         return TOBI_OK;
     }
     memcpy(b->info.position, b->centre, sizeof b->centre);
-    to_quaternion((const double (*)[3])b->frame, b->info.orientation);
+    tobi_frame_quaternion((const double (*)[3])b->frame, b->info.orientation);
     mirror_motion(b);
     return TOBI_OK;
 }
@@ -585,11 +530,12 @@ tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err
     memcpy(old_frame, b->frame, sizeof old_frame);
     swap_vertices(b);
     if (b->deforms) tobi_body_update_surface(b);
-    TOBI_TRY(place_frame(b, t, b->centre, b->frame, err));
+    TOBI_TRY(tobi_body_find_frame(b, t, b->centre, b->frame, err));
     for (int a = 0; a < 3; a++) b->info.velocity[a] = (b->centre[a] - old_centre[a])/dt;
     memcpy(b->info.position, b->centre, sizeof b->centre);
-    to_quaternion((const double (*)[3])b->frame, b->info.orientation);
-    turn_rate((const double (*)[3])old_frame, (const double (*)[3])b->frame, dt, b->info.angular_velocity);
+    tobi_frame_quaternion((const double (*)[3])b->frame, b->info.orientation);
+    tobi_frame_rate((const double (*)[3])old_frame, (const double (*)[3])b->frame, dt,
+                    b->info.angular_velocity);
     if (!b->deforms) carry_before(b, dt);
     mirror_motion(b);
     return TOBI_OK;

@@ -176,6 +176,13 @@ void tobi_body_find_absence(tobi_body *b);
    coordinates. TOBI_INVALID in words for numbers that are not finite, and for z in 2-D. */
 tobi_status tobi_body_ask_motion(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
                                  double (*out)[3], tobi_error *err);
+/* Where the material at the rest centre is at t, m, and how it is turned: as tobi_body.frame. */
+tobi_status tobi_body_find_frame(const tobi_body *b, double t, double centre[3], double frame[3][3],
+                                 tobi_error *err);
+/* Quaternion w x y z of the rotation whose columns are the frame's rows. */
+void tobi_frame_quaternion(const double frame[3][3], double q[4]);
+/* rad/s, the angular velocity that turns one frame into another in dt. */
+void tobi_frame_rate(const double from[3][3], const double to[3][3], double dt, double omega[3]);
 /* For a substep: puts a body with a motion where it is `way` s after t, as a rigid body; one that deforms is
    moved by `more` s along the mean velocities of the step. `next` stays. */
 tobi_status tobi_body_place_within(tobi_body *b, double t, double way, double more, tobi_error *err);

@@ -377,7 +377,7 @@ static int release(tobi_constraints *c, int i)
 static int meet(tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
                 tobi_constraint_row *r)
 {
-    double rate = 0;                     /* of the gap: the angle falls as it grows */
+    double rate = r->pace;               /* of the gap: the angle falls as it grows */
     if (!r->stop || r->active || r->released) return 0;
     const int stop = tobi_constraint_at_stop(j, tobi_constraint_angle(j, bodies, 0));
     for (int side = 0; side < 2; side++)
@@ -430,27 +430,21 @@ void tobi_constraints_add_load(const tobi_constraints *c, int slot, double f[6])
 static tobi_status follow_motion(const tobi_constraints *c, tobi_constraint *j, const tobi_body *bodies,
                                  double t, double dt, tobi_constraint_row *row, tobi_error *err)
 {
-    const tobi_body *b = j->body[1] >= 0 ? &bodies[j->body[1]] : NULL;
     const int count = count_rows(c, j);
-    double rest[2][3], now[2][3], point[3], axis[3], shift[3], turned[3];
+    double point[3], axis[3], shift[3], turned[3];
     for (int i = 0; i < count; i++) row[i].pace = 0;
     if (j->motor.kind) {
         tobi_motor_aim(j, bodies, dt, motor_of(c, j, row)->mobility);
         motor_of(c, j, row)->pace = j->motor.rate;
     }
-    if (!b || b->rigid.kind != TOBI_PRESCRIBED) return TOBI_OK;
-    vec3_add_scaled(rest[0], b->rest.centre, 1, j->point[1]);
-    vec3_add_scaled(rest[1], rest[0], c->reach, j->axis[1]);
-    memcpy(now, rest, sizeof now);
-    if (b->motion) TOBI_TRY(tobi_body_ask_motion(b, t + dt, 2, (const double (*)[3])rest, now, err));
-    vec3_sub(j->next_point, now[0], b->lower);
-    vec3_sub(j->next_axis, now[1], now[0]);
-    vec3_normalize(j->next_axis);
+    if (j->body[1] < 0 || moves(bodies, j->body[1])) return TOBI_OK;
+    TOBI_TRY(tobi_constraint_follow(j, bodies, c->reach, t, dt, err));
     tobi_constraint_end(j, 1, bodies, 0, point, axis);
     vec3_sub(shift, j->next_point, point);
     vec3_cross(turned, axis, j->next_axis);
     for (int i = 0; i < count; i++)
-        if (!row[i].motor) row[i].pace = vec3_dot(row[i].axis, row[i].turns ? turned : shift)/dt;
+        row[i].pace += row[i].stop || row[i].motor ? vec3_dot(row[i].axis, j->spin)
+                                                   : vec3_dot(row[i].axis, row[i].turns ? turned : shift)/dt;
     return TOBI_OK;
 }
 

@@ -58,7 +58,9 @@ typedef struct tobi_constraint {
     double torque[3], before[3], damped[3];      /* N m on the body: of the spring, now and a step before,
                                             and of the damper; of a guide's motor N                     */
     double start[4];                     /* how the body is turned against the other at the start       */
-    double next_point[3], next_axis[3];  /* at the end of the step, of a body that is prescribed        */
+    double next_point[3], next_axis[3], next_turn[4];   /* at the end of the step, of a body that is
+                                            prescribed: place, axis, orientation                        */
+    double spin[3];                      /* rad/s, of such a body in the step                           */
     double impulse[6];                   /* N s, N m s at the joint: on the body, in this step          */
     tobi_motor motor;
     double rate_before;                  /* rad/s, when the step began                                  */
@@ -97,7 +99,11 @@ void tobi_constraint_end(const tobi_constraint *j, int side, const tobi_body *bo
                          double point[3], double axis[3]);
 /* joint_angle.c: of the body against the other since the start, rad, -pi to pi; next: at the next pose. */
 double tobi_constraint_angle(const tobi_constraint *j, const tobi_body *bodies, int next);
-/* How fast it grows, rad/s, m/s. */
+/* joint_motion.c: where a prescribed body takes its side of the joint in a step of dt from t on; arm: m, of
+   the place that shows the axis. */
+tobi_status tobi_constraint_follow(tobi_constraint *j, const tobi_body *bodies, double arm, double t,
+                                   double dt, tobi_error *err);
+/* joint_angle.c: how fast the angle grows, rad/s, m/s. */
 double tobi_constraint_rate(const tobi_constraint *j, const tobi_body *bodies);
 /* -1, 1: at the lower or upper stop within rounding, in the present pose, or beyond it; else 0. */
 int tobi_constraint_at_stop(const tobi_constraint *j, double angle);

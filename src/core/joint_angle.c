@@ -15,8 +15,8 @@ static void find_turn(const tobi_constraint *j, const tobi_body *bodies, int nex
     const tobi_rigid *r = &bodies[j->body[0]].rigid;
     if (j->body[1] >= 0) {
         const tobi_rigid *other = &bodies[j->body[1]].rigid;
-        const int moves = next && other->kind != TOBI_PRESCRIBED;
-        memcpy(to, moves ? other->next_orientation : other->orientation, sizeof to);
+        const double *then = other->kind == TOBI_PRESCRIBED ? j->next_turn : other->next_orientation;
+        memcpy(to, next ? then : other->orientation, sizeof to);
     }
     for (int a = 1; a < 4; a++) to[a] = -to[a];
     tobi_quaternion_product(to, next ? r->next_orientation : r->orientation, q);

@@ -70,18 +70,6 @@ static tobi_status take_hinge(const tobi_joint_def *def, int dimension, tobi_con
     return TOBI_OK;
 }
 
-/* To a body that a motion turns its angle would be that to a body at rest. */
-static tobi_status check_motor(const tobi_world *w, const tobi_joint_def *def, const tobi_constraint *j,
-                               tobi_error *err)
-{
-    const tobi_body *b = j->body[1] >= 0 ? &w->sim.bodies[j->body[1]] : NULL;
-    if (!tobi_motor_is_given(&def->motor) || !b || b->rigid.kind != TOBI_PRESCRIBED || !b->motion)
-        return TOBI_OK;
-    return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "joint '%s': body '%s' has a motion; allowed is "
-                                      "a motor against a body that moves by forces, one that rests, and the "
-                                      "domain", def->name, def->to_body), "motor");
-}
-
 static tobi_status check_axis(const tobi_joint_def *def, int dimension, tobi_constraint *j, double axis[3],
                               tobi_error *err)
 {
@@ -137,7 +125,6 @@ tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_
     TOBI_TRY(check_bodies(w, def, &j, err));
     TOBI_TRY(tobi_at_key(err, check_axis(def, w->system[0].box.dimension, &j, axis, err), "axis"));
     TOBI_TRY(take_hinge(def, w->system[0].box.dimension, &j, err));
-    TOBI_TRY(check_motor(w, def, &j, err));
     snprintf(j.name, sizeof j.name, "%s", def->name);
     for (int side = 0; side < 2; side++) localize(w, def->point, axis, side, &j);
     tobi_constraint *more = realloc(c->at, (size_t)(c->count + 1)*sizeof *more);

@@ -152,6 +152,27 @@ expect 0 "" run slides.json --out held --quiet --force --set method=isph --set b
     --set bodies.buoy.guide.motor='{"speed":0}' --set bodies.piston.guide.motor='{"speed":0}' --set end_time=0.5
 check "a brake holds a buoy against its buoyancy" \
     awk -F, 'NR > 1 && $1 > 0.2 { sum += $15; n++ } END { exit !(n > 5 && (sum/n + 122.6)^2 < 16) }' held/joints.csv
+cat > towed.json <<'END2'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.025, "end_time": 0.1,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.4] } } ] } ],
+  "bodies": [ { "name": "hull", "box": { "min": [0.3, 0.2], "max": [0.5, 0.3] },
+                "motion": [ { "translation": { "velocity": [0.3, 0], "ramp": 0.05 } },
+                            { "yaw": { "amplitude": 10, "period": 0.4, "centre": [0.4, 0.25] } } ] },
+              { "name": "fin", "box": { "min": [0.52, 0.23], "max": [0.7, 0.27] }, "dynamics": "free" } ],
+  "joints": [ { "name": "tail", "body": "fin", "to_body": "hull", "point": [0.51, 0.25],
+                "motor": { "angle": 0, "amplitude": 12, "period": 0.4 } } ],
+  "output": { "interval": 0.05 } }
+END2
+for method in dfsph wcsph isph eisph; do
+    told=$([ $method = dfsph ] && echo "scatters by")
+    expect 0 "$told" run towed.json --out towed --quiet --force --threads 1 --set method=$method
+    check "$method: a motor on a hull with a motion keeps its angle" \
+        awk -F, 'NR > 1 && ($5 - 12*sin(5*3.14159265358979*$1))^2 > 1e-13 { bad = 1 } END { exit bad || NR < 8 }' \
+        towed/joints.csv
+    expect 0 "" run towed.json --out parts --quiet --force --threads 2 --until 0.05 --set method=$method
+    expect 0 "" resume parts --quiet --threads 2 --until 0.1
+    check "$method: and is the same after a resume, with two threads" cmp towed/joints.csv parts/joints.csv
+done
 check "resolved.json has the motors" grep -q '"amplitude": 300' whole/resolved.json
 
 "$program" check rafts.json --set joints.hinge.stiffness=1e9 > out.txt 2>&1

@@ -237,6 +237,49 @@ static void wrong_stops_and_springs_are_refused(void **state)
     refuse(&d, "joint 'j': a ball joint has no stops, spring or damper; a hinge has");
 }
 
+/* About z at (1, 2) by user[0] rad/s. */
+static tobi_status turn(void *user, double t, int64_t n, const double (*rest)[3], double (*out)[3],
+                        tobi_error *err)
+{
+    const double angle = t**(const double *)user;
+    (void)err;
+    for (int64_t i = 0; i < n; i++) {
+        const double x = rest[i][0] - 1, y = rest[i][1] - 2;
+        out[i][0] = 1 + cos(angle)*x - sin(angle)*y;
+        out[i][1] = 2 + sin(angle)*x + cos(angle)*y;
+        out[i][2] = rest[i][2];
+    }
+    return TOBI_OK;
+}
+
+/* A hub turns away below a bar that rests; from the stop on it takes the bar along, without a moment. The
+   rate of its frame is the sine of the turn in a step: of second order. */
+static void a_stop_of_a_turning_hub_takes_the_bar_along(void **state)
+{
+    (void)state;
+    double rate = 0.8;
+    rig g;
+    open_rig(&g, 3, weightless);
+    add_bar(&g, 1);
+    tobi_body_def hub = rig_def();
+    hub.dynamics = TOBI_PRESCRIBED;
+    hub.motion = turn, hub.motion_user = &rate, hub.motion_rigid = 1;
+    rig_box(&g, hub, (double[3]){ 0.1, 0.1, 0.1 }, (double[3]){ 1, 2, 2 });
+    tobi_constraint *j = join(&g, 0, 1, 1);
+    j->lower = -0.3, j->upper = 0.3;
+    rig_start(&g);
+    for (int n = 0; n < 1000; n++) {
+        rig_step(&g, 1e-3);
+        const double exact = fmax(-0.3, -rate*g.time), spin = g.bodies[0].rigid.angular_velocity[2];
+        const double off = angle_of(&g, 0) - exact;
+        if (fabs(off) > 1e-6) fail_msg("off by %g rad at %g s", off, g.time);
+        const double moment = j->info.moment[2];
+        if (g.time > 0.38 && (fabs(spin - rate) > 1e-6 || fabs(moment) > 1e-6))
+            fail_msg("%.12g rad/s, %g N m at %g s", spin, moment, g.time);
+    }
+    rig_close(&g);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -244,6 +287,7 @@ int main(void)
         cmocka_unit_test(free_bodies_swing_against_each_other),
         cmocka_unit_test(a_stiff_spring_is_stable),
         cmocka_unit_test(a_stop_holds_a_bar),
+        cmocka_unit_test(a_stop_of_a_turning_hub_takes_the_bar_along),
         cmocka_unit_test(an_elbow_loses_energy_only),
         cmocka_unit_test(wrong_stops_and_springs_are_refused)
     };

@@ -200,6 +200,139 @@ static void a_motor_stops_at_stops(void **state)
     }
 }
 
+/* --- on a body with a motion ----------------------------------------------------------------------- */
+
+/* It goes along y by b t^2/2, or turns about z at (at, 2) by rate t + sway sin(3 t). */
+typedef struct course { double b, at, rate, sway; } course;
+
+static tobi_status follow(void *user, double t, int64_t n, const double (*rest)[3], double (*out)[3],
+                          tobi_error *err)
+{
+    const course *c = user;
+    const double turn = c->rate*t + c->sway*sin(3*t);
+    (void)err;
+    for (int64_t i = 0; i < n; i++) {
+        const double x = rest[i][0] - c->at, y = rest[i][1] - 2;
+        out[i][0] = c->at + cos(turn)*x - sin(turn)*y;
+        out[i][1] = 2 + sin(turn)*x + cos(turn)*y + 0.5*c->b*t*t;
+        out[i][2] = rest[i][2];
+    }
+    return TOBI_OK;
+}
+
+/* The bar on a hull about its end; at the velocities of the hull from the start on, or at rest. */
+static tobi_constraint *add_hull(rig *g, course *c, int along)
+{
+    tobi_constraint *j = add_arm(g, JOINT);
+    tobi_body_def def = rig_def();
+    tobi_rigid *r = &g->bodies[0].rigid;
+    const double spin = along ? c->rate + 3*c->sway : 0;
+    def.dynamics = TOBI_PRESCRIBED;
+    def.motion = follow, def.motion_user = c, def.motion_rigid = 1;
+    rig_box(g, def, (double[3]){ 0.2, 0.2, 0.2 }, (double[3]){ 2, 2, 2 });
+    r = &g->bodies[0].rigid;
+    r->velocity[1] = spin*(2.5 - c->at);
+    r->angular_velocity[2] = spin;
+    r->momentum[2] = spin*r->inertia[8];
+    j->body[1] = 1;
+    memset(j->point[1], 0, sizeof j->point[1]);
+    return j;
+}
+
+/* A hull accelerates across the bar, which a motor keeps where it is, or swings. */
+static void a_moved_hull_takes_the_torque_of_the_bar(void **state)
+{
+    (void)state;
+    course c = { .b = 3 };
+    rig g;
+    rig_open(&g, 5, weightless);
+    tobi_constraint *j = add_hull(&g, &c, 0);
+    j->motor.kind = TOBI_MOTOR_ANGLE;
+    rig_start(&g);
+    const double exact = 0.5*3*g.bodies[0].rigid.mass;
+    for (int n = 0; n < 200; n++) {
+        drive(&g, 0, 0, 2e-3);
+        if (fabs(angle_of(&g)) > 1e-12) fail_msg("off by %g", angle_of(&g));
+        if (n > 1 && fabs(torque_of(&g)/exact - 1) > 1e-9) fail_msg("%g N m, exact %g", torque_of(&g), exact);
+    }
+    for (int n = 0; n < 200; n++) {
+        const double t = g.time - 0.4;
+        drive(&g, swing(t), swing(t + 2e-3), 2e-3);
+        const double off = angle_of(&g) - swing(g.time - 0.4);
+        if (fabs(off) > 1e-12) fail_msg("off by %g", off);
+    }
+    rig_close(&g);
+}
+
+/* A hull turns, steadily or not, and the motor turns the bar on it. */
+static void an_angle_on_a_turning_hull_is_kept(void **state)
+{
+    (void)state;
+    course c = { .at = 1.4, .rate = 0.7, .sway = 0.4 };
+    for (int kind = TOBI_MOTOR_SPEED; kind <= TOBI_MOTOR_ANGLE; kind++) {
+        rig g;
+        rig_open(&g, 5, weightless);
+        tobi_constraint *j = add_hull(&g, &c, 1);
+        j->motor.kind = kind;
+        rig_start(&g);
+        for (int n = 0; n < 500; n++) {
+            if (kind == TOBI_MOTOR_SPEED) drive(&g, 0.9, 0.9, 2e-3);
+            else drive(&g, swing(g.time), swing(g.time + 2e-3), 2e-3);
+            const double off = angle_of(&g) - (kind == TOBI_MOTOR_SPEED ? 0.9*g.time : swing(g.time));
+            if (fabs(off) > 1e-11) fail_msg("kind %d: off by %g", kind, off);
+            const double rate = kind == TOBI_MOTOR_SPEED ? rate_of(&g) : 0.9;
+            if (fabs(rate - 0.9) > 1e-11) fail_msg("%g rad/s", rate);
+        }
+        rig_close(&g);
+    }
+}
+
+/* The bar stands across the way from the axis of the hull: what pulls it outwards has a moment. */
+static void a_brake_on_a_turning_hull_has_the_moment_of_the_centrifugal_force(void **state)
+{
+    (void)state;
+    course c = { .at = 1.4, .rate = 0.7 };
+    rig g;
+    rig_open(&g, 5, weightless);
+    tobi_constraint *j = add_hull(&g, &c, 1);
+    j->motor.kind = TOBI_MOTOR_SPEED;
+    rig_start(&g);
+    for (int n = 0; n < 1000; n++) drive(&g, acos(0), acos(0), 1e-3);
+    const tobi_rigid *r = &g.bodies[0].rigid;
+    for (int n = 0; n < 100; n++) drive(&g, 0, 0, 1e-3);
+    const double exact = r->mass*0.49*0.5*0.6;
+    if (fabs(torque_of(&g)/exact - 1) > 1e-4) fail_msg("%.9g N m, exact %.9g", torque_of(&g), exact);
+    assert_true(fabs(j->info.power) < 1e-9);
+    rig_close(&g);
+}
+
+/* About its hinge the hull turns at W. Full torque until the bar turns at W + w, then none. */
+static void the_largest_torque_brings_a_bar_to_a_turning_hull(void **state)
+{
+    (void)state;
+    const double W = 0.5, w = 0.4, most = 8;
+    course c = { .at = 2, .rate = W };
+    rig g;
+    rig_open(&g, 5, weightless);
+    tobi_constraint *j = add_hull(&g, &c, 0);
+    const double I = moment_of(&g), due = I*(W + w)/most, dt = due/100.5;
+    j->motor = (tobi_motor){ .kind = TOBI_MOTOR_SPEED, .most = most, .before = w, .value = w };
+    rig_start(&g);
+    double work = 0;
+    for (int n = 1; n <= 200; n++) {
+        rig_step(&g, dt);
+        if (n > 1) work -= dt*j->info.power;
+        const double spin = g.bodies[0].rigid.angular_velocity[2], exact = fmin(most*g.time/I, W + w);
+        if (fabs(spin - exact) > 1e-6) fail_msg("%.9g rad/s at %g s, exact %.9g", spin, g.time, exact);
+        const double torque = n <= 100 ? most : n == 101 ? 0.5*most : 0;
+        if (fabs(torque_of(&g) - torque) > 1e-3*most) fail_msg("step %d: %g N m", n, torque_of(&g));
+    }
+    /* at the start nobody knows the speed of the hull */
+    const double first = most*dt*(0.5*most*dt/I - W), exact = 0.5*I*(w*w - W*W) - first;
+    if (fabs(work - exact) > 1e-4*I*W*W) fail_msg("work %g J, exact %g", work, exact);
+    rig_close(&g);
+}
+
 /* --- what is refused ----------------------------------------------------------------------------- */
 
 static const char head[] =
@@ -273,7 +406,7 @@ static void mistakes_in_a_guide_are_told(void **state)
 }
 
 /* Whether a joint of a C program is refused in such words, at such a key. */
-static void refuse(const tobi_joint_def *def, tobi_motion_fn motion, const char *key, const char *words)
+static void refuse(const tobi_joint_def *def, const char *key, const char *words)
 {
     tobi_error err = { 0 };
     tobi_world *world;
@@ -281,27 +414,14 @@ static void refuse(const tobi_joint_def *def, tobi_motion_fn motion, const char 
     w.spacing = 0.05;
     for (int a = 0; a < 3; a++) w.domain_max[a] = 1;
     assert_int_equal(tobi_world_create(&w, NULL, &world, &err), TOBI_OK);
-    for (int k = 0; k < 2; k++) {
-        tobi_body_def b = tobi_default_body_def();
-        b.name = k ? "carriage" : "flap";
-        b.dynamics = k ? TOBI_PRESCRIBED : TOBI_FREE;
-        b.motion = k ? motion : NULL;
-        b.motion_rigid = 1;
-        for (int a = 0; a < 3; a++) b.box_min[a] = 0.2 + 0.4*k, b.box_max[a] = 0.4 + 0.4*k;
-        assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_OK);
-    }
+    tobi_body_def b = tobi_default_body_def();
+    b.name = "flap", b.dynamics = TOBI_FREE;
+    for (int a = 0; a < 3; a++) b.box_min[a] = 0.2, b.box_max[a] = 0.4;
+    assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_OK);
     const tobi_status status = tobi_world_add_joint(world, def, &err);
     if (status == TOBI_OK || !strstr(err.text, words) || strcmp(err.key, key) != 0)
         fail_msg("'%s' at '%s': %s at %s", words, key, err.text, err.key);
     tobi_world_destroy(world);
-}
-
-static tobi_status stay(void *user, double t, int64_t n, const double (*rest)[3], double (*at)[3],
-                        tobi_error *err)
-{
-    (void)user, (void)t, (void)err;
-    memcpy(at, rest, (size_t)n*sizeof *at);
-    return TOBI_OK;
 }
 
 /* A file of a motor. */
@@ -320,21 +440,19 @@ static void mistakes_in_c_are_told(void **state)
     tobi_joint_def right = tobi_default_joint_def(), d;
     right.name = "j", right.body = "flap", right.axis[1] = 1;
     d = right, d.motor.speed = 5, d.motor.angle = 5;
-    refuse(&d, NULL, "motor", "a motor has one of speed");
+    refuse(&d, "motor", "a motor has one of speed");
     d = right, d.motor.speed = 5, d.motor.torque_max = -1;
-    refuse(&d, NULL, "", "torque_max");
+    refuse(&d, "", "torque_max");
     d = right, d.motor.speed = 5, d.kind = TOBI_BETWEEN_BALL, d.axis[1] = 0;
-    refuse(&d, NULL, "motor", "joint 'j': a ball joint has no motor; a hinge has");
-    d = right, d.motor.speed = 5, d.to_body = "carriage";
-    refuse(&d, stay, "motor", "joint 'j': body 'carriage' has a motion; allowed is a motor against a body");
+    refuse(&d, "motor", "joint 'j': a ball joint has no motor; a hinge has");
     d = right, d.motor.file = write_file("time,torque\n0,1\n1,2\n"), d.motor.torque_max = 5;
-    refuse(&d, NULL, "motor.torque_max", "this one has a torque");
+    refuse(&d, "motor.torque_max", "this one has a torque");
     d = right, d.motor.file = write_file("time,angle [deg]\n0,1\n1,2\n");
-    refuse(&d, NULL, "motor.file", "the motor asks for 1 degrees at time 0");
+    refuse(&d, "motor.file", "the motor asks for 1 degrees at time 0");
     d = right, d.motor.file = write_file("time,angle,speed\n0,1,2\n");
-    refuse(&d, NULL, "motor.file", "a motor has the columns time (s) and one of angle (degrees), speed");
+    refuse(&d, "motor.file", "a motor has the columns time (s) and one of angle (degrees), speed");
     d = right, d.motor.file = write_file("time,x\n0,1\n");
-    refuse(&d, NULL, "motor.file", "there is no column \"x\"; allowed are time (s) and one of angle");
+    refuse(&d, "motor.file", "there is no column \"x\"; allowed are time (s) and one of angle");
     remove("motor.csv");
 }
 
@@ -384,6 +502,10 @@ int main(void)
         cmocka_unit_test(an_angle_far_away_is_reached_without_overshoot),
         cmocka_unit_test(a_motor_keeps_angular_momentum),
         cmocka_unit_test(a_motor_stops_at_stops),
+        cmocka_unit_test(a_moved_hull_takes_the_torque_of_the_bar),
+        cmocka_unit_test(an_angle_on_a_turning_hull_is_kept),
+        cmocka_unit_test(a_brake_on_a_turning_hull_has_the_moment_of_the_centrifugal_force),
+        cmocka_unit_test(the_largest_torque_brings_a_bar_to_a_turning_hull),
         cmocka_unit_test(mistakes_in_a_scene_are_told),
         cmocka_unit_test(mistakes_in_c_are_told),
         cmocka_unit_test(mistakes_in_a_guide_are_told),
