@@ -39,6 +39,7 @@ tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
     tobi_status status = tobi_rigid_start(s->sim->bodies, s->sim->body_count, &world, notes, NOTES,
                                           &w->dynamics, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", NULL, notes, err);
+    if (status == TOBI_OK) status = tobi_motors_note(w, err);
     free(notes);
     w->step_cap = s->sim->def.time_step_max;
     return status;

@@ -12,6 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double SOON = 1e-9;         /* s, or share of the time: just before and after it           */
+static const double JUMP = 1e-6;         /* in the unit of the motor: smaller, it is rounding           */
+
 /* The words of a hinge and of a guide. */
 static const struct { const char *joint, *place, *unit, *load, *most, *has; } words[] = {
     { "hinge", "angle", "degrees", "torque", "torque_max",
@@ -24,6 +27,7 @@ struct tobi_motor_source {
     int slides;                  /* 1: of a guide                                                       */
     int kind;                    /* tobi_motor_kind                                                     */
     double most;                 /* N m, N                                                              */
+    double start;                /* s: of the definition                                                */
     tobi_keyframes *rows;        /* NULL: no file                                                       */
     tobi_motion *motion;         /* its shift along x is the value; NULL: 0, or a file                  */
 };
@@ -139,6 +143,7 @@ static tobi_status make_source(const tobi_motor_def *d, tobi_motor_source *m, to
     else status = make_value(d, constant[column], &m->motion, err);
     m->kind = TOBI_MOTOR_SPEED + column;
     m->most = d->torque_max > 0 ? d->torque_max : INFINITY;
+    m->start = d->start;
     if (status == TOBI_OK && m->kind == TOBI_MOTOR_TORQUE) status = refuse_most(d, m->slides, err);
     if (status == TOBI_OK) status = check_start(m, err);
     if (status != TOBI_OK) free_source(m);
@@ -239,6 +244,36 @@ tobi_status tobi_motors_start(tobi_world *w, tobi_error *err)
         c->at[m->joint].motor = (tobi_motor){ .kind = m->kind, .most = m->most };
     }
     return tobi_motors_tell(w, 0, 0, err);
+}
+
+/* A jump at time t of a motor that is as strong as it must be. */
+static tobi_status note_jump(tobi_world *w, const tobi_motor_source *m, double t, tobi_error *err)
+{
+    const tobi_constraint *j = &w->sim.constraints.at[m->joint];
+    const int speed = m->kind == TOBI_MOTOR_SPEED;
+    const double soon = SOON*(1 + t);
+    double before, after;
+    char text[300];
+    TOBI_TRY(find_value(m, t > 0 ? t - soon : 0, &before, err));
+    TOBI_TRY(find_value(m, t + soon, &after, err));
+    if (t == 0 && speed) before = tobi_constraint_rate(j, w->sim.bodies)*(m->slides ? 1 : 180/acos(-1));
+    if (!(fabs(after - before) > JUMP)) return TOBI_OK;
+    snprintf(text, sizeof text, "its motor asks for %.4g %s%s at %.4g s: the body %s that in one step, by as "
+             "large a %s as it takes; %s, or a %s, lets it get there in time\n", after, words[m->slides].unit,
+             speed ? "/s" : "", t, speed ? "has" : "goes", words[m->slides].load,
+             m->rows ? "a file that begins where the body is" : "a ramp", words[m->slides].most);
+    return tobi_world_add_notes(w, m->body < 0 ? "joint" : "body", j->name, text, err);
+}
+
+tobi_status tobi_motors_note(tobi_world *w, tobi_error *err)
+{
+    for (int k = 0; k < w->motor_count; k++) {
+        const tobi_motor_source *m = &w->motors[k];
+        if (m->kind == TOBI_MOTOR_TORQUE || !isinf(m->most)) continue;
+        TOBI_TRY(note_jump(w, m, 0, err));
+        if (m->start > 0) TOBI_TRY(note_jump(w, m, m->start, err));
+    }
+    return TOBI_OK;
 }
 
 tobi_status tobi_motors_tell(tobi_world *w, double t, double dt, tobi_error *err)

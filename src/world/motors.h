@@ -10,6 +10,8 @@ tobi_status tobi_motors_add(tobi_world *w, const tobi_motor_def *def, const char
 /* At the start: the motors of bodies' own joints become constraints, behind the joints; all are told what
    the time 0 asks for. */
 tobi_status tobi_motors_start(tobi_world *w, tobi_error *err);
+/* Then: notes on motors that set a body off in one step. */
+tobi_status tobi_motors_note(tobi_world *w, tobi_error *err);
 /* What a step of dt from t on is to begin and to end with. */
 tobi_status tobi_motors_tell(tobi_world *w, double t, double dt, tobi_error *err);
 /* The motor of a body's own joint, NULL if there is none. */

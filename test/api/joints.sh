@@ -173,6 +173,19 @@ for method in dfsph wcsph isph eisph; do
     expect 0 "" resume parts --quiet --threads 2 --until 0.1
     check "$method: and is the same after a resume, with two threads" cmp towed/joints.csv parts/joints.csv
 done
+told() { expect 0 "" check "$1" "${@:3}"; check "check tells: $2" grep -q "$2" out.txt; }
+told motors.json "joint 'tail': its motor asks for 12 degrees/s at 0 s: the body has that in one step, by as large a torque" \
+    --set joints.tail.motor='{"speed":12}'
+told motors.json "'tail': its motor asks for 12 degrees/s at 0.02 s" --set joints.tail.motor='{"speed":12,"start":0.02}'
+told motors.json "'tail': its motor asks for 5 degrees at 0.02 s: the body goes that in one step" \
+    --set joints.tail.motor='{"angle":5,"start":0.02}'
+printf 'time,speed\n0,0.5\n0.04,2\n' > speeds.csv
+told slides.json "as large a force as it takes; a file that begins where the body is, or a force_max, lets it get there in time" \
+    --set bodies.piston.guide.motor.file=speeds.csv
+for motor in '{"speed":12,"ramp":0.1}' '{"speed":12,"torque_max":3}' '{"speed":0}' '{"torque":3}' '{"speed":12,"start":0.02,"ramp":0.1}'; do
+    "$program" check motors.json --set joints.tail.motor="$motor" > out.txt 2>&1
+    check "check does not tell of $motor" eval '! grep -q "its motor" out.txt'
+done
 check "resolved.json has the motors" grep -q '"amplitude": 300' whole/resolved.json
 
 "$program" check rafts.json --set joints.hinge.stiffness=1e9 > out.txt 2>&1
