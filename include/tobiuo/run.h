@@ -42,6 +42,7 @@ typedef struct tobi_run tobi_run;
 typedef struct tobi_run_size {
     int64_t outputs;                /* from time 0 to the end, both included                    */
     double  files, bytes;           /* of all outputs and the last two checkpoints              */
+    double  memory;                 /* bytes that taking an output needs, besides the world     */
 } tobi_run_size;
 
 /* Estimates a run from time 0 to `end` (s). Nothing is written or stepped; the particles of a world that

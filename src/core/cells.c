@@ -28,7 +28,7 @@ void tobi_box_init(tobi_box *b, int dimension, const double lower[3], const doub
 }
 
 /* Enough cells of at least h; wider ones when the box is vast and empty. */
-static void choose_cells(tobi_cells *c, const tobi_box *box, double h, int64_t particles)
+void tobi_cells_plan(tobi_cells *c, const tobi_box *box, double h, int64_t particles)
 {
     double wide = h*(1 + 1e-6);
     for (;; wide *= 1.26) {
@@ -70,7 +70,7 @@ static tobi_status give_up(tobi_cells *c, tobi_error *err)
 tobi_status tobi_cells_grow(tobi_cells *c, const tobi_particles *p, tobi_error *err)
 {
     const int64_t n = p->capacity, sort = 4*(scratch_entries(n, tobi_particles_widest(p)) + 16);
-    const int64_t guess = 2*(n*36 + 4096), bytes = sort > guess ? sort : guess;
+    const int64_t guess = TOBI_CELLS_LIST*n + 8192, bytes = sort > guess ? sort : guess;
     if (!c->record || c->rows < n) {
         tobi_array_free(c->record);
         tobi_array_free(c->list_start);
@@ -105,7 +105,7 @@ tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, cons
                              "the periodic domain is %g m along %c, allowed is at least three "
                              "support radii (%g m)",
                              box->size[a], "xyz"[a], 3 * h);
-    choose_cells(c, box, h, p->capacity);
+    tobi_cells_plan(c, box, h, p->capacity);
     c->start = tobi_array_make(c->total + 1, sizeof *c->start);
     c->histogram = tobi_array_make(tobi_sort_histogram_size(x), sizeof *c->histogram);
     if (!c->start || !c->histogram) return give_up(c, err);

@@ -47,6 +47,8 @@ typedef struct tobi_cells {
     int64_t  rows;          /* that there is memory for                               */
 } tobi_cells;
 
+/* How many cells, without memory for them. */
+void tobi_cells_plan(tobi_cells *c, const tobi_box *box, double h, int64_t particles);
 /* For as many particles as p has memory for. */
 tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, const tobi_particles *p,
                               const tobi_exec *x, tobi_error *err);
@@ -57,7 +59,8 @@ void tobi_cells_free(tobi_cells *c);
 void tobi_cells_widen(tobi_cells *c);
 /* Bytes per particle, without the neighbours; what list_far adds. */
 enum { TOBI_CELLS_ROW = sizeof(tobi_record) + sizeof(uint32_t) + sizeof(uint16_t),
-       TOBI_CELLS_FAR = sizeof(int32_t) };
+       TOBI_CELLS_FAR = sizeof(int32_t),
+       TOBI_CELLS_LIST = 72 };           /* of the list before the first search, which uses all of it  */
 
 /* Wraps periodic positions, sorts all state fields by cell, fills start and the records, their w from
    `payload`, a field of p; NULL = 0. */

@@ -232,6 +232,18 @@ int64_t tobi_particles_row_bytes(const tobi_field_list *list, unsigned needs)
     return (int64_t)(bytes + place_leased(list, needs, at));
 }
 
+int64_t tobi_particles_state_bytes(const tobi_field_list *list, unsigned needs)
+{
+    size_t bytes = 0;
+    for (int k = 0; k < COMMON; k++)
+        if (common[k].life == TOBI_STATE) bytes += common[k].bytes;
+    for (int k = 0; list && k < list->count; k++) {
+        const tobi_field *f = &list->field[k];
+        if (is_there(f, needs) && f->life == TOBI_STATE) bytes += f->bytes;
+    }
+    return (int64_t)bytes;
+}
+
 int64_t tobi_particles_widest(const tobi_particles *p)
 {
     size_t widest = 0;

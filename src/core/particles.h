@@ -56,8 +56,9 @@ void tobi_particles_remove(tobi_particles *p, const int32_t *rows, int64_t count
 void tobi_particles_stage(tobi_particles *p, int stages);
 /* An array of so many rows of so many bytes, zero, padded, for cache lines; NULL without memory. */
 void *tobi_particles_rows(int64_t rows, size_t row);
-/* Bytes per particle, without neighbour lists. */
+/* Bytes per particle, without neighbour lists; those of its state alone. */
 int64_t tobi_particles_row_bytes(const tobi_field_list *list, unsigned needs);
+int64_t tobi_particles_state_bytes(const tobi_field_list *list, unsigned needs);
 
 /* Reorders every state field: row k takes the old row order[k]. scratch holds count rows of the widest state
    field (tobi_particles_widest bytes each). */

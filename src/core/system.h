@@ -9,6 +9,13 @@ enum { TOBI_RESTORED_ROW = 9, TOBI_MEMORY_LIMIT = 64 };
 
 /* Bytes of memory by what they hold. */
 enum { TOBI_ACCOUNT_LIMIT = 24 };
+/* What its size depends on. */
+typedef struct tobi_system_plan {
+    tobi_cell_points cells;
+    int64_t particles;
+    double entries;                  /* in the list of each, in the mean                               */
+} tobi_system_plan;
+
 typedef struct tobi_account {
     int count;
     const char *name[TOBI_ACCOUNT_LIMIT];
@@ -176,6 +183,8 @@ typedef struct tobi_method {
        derived from it follows. loaded: the state is a checkpoint's, of that gravity already. NULL: nothing is
        kept. */
     void (*follow_gravity)(tobi_system *s, int loaded);
+    /* Bytes that the state will take, before there is one; NULL = little. */
+    int64_t (*estimate)(const tobi_system *s, const tobi_system_plan *plan);
     /* Adds what the state has allocated; NULL = little. */
     void (*account)(const tobi_system *s, tobi_account *a);
     void (*free)(void *state);

@@ -58,12 +58,25 @@ tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, 
     return TOBI_OK;
 }
 
+static int64_t sum_bytes(const tobi_multigrid *m, int64_t nodes)
+{
+    return nodes*GRID_ARRAYS*(int64_t)sizeof *m->memory +
+           (int64_t)m->cells[0]*m->cells[1]*m->cells[2]*(int64_t)sizeof *m->corner;
+}
+
+int64_t tobi_multigrid_plan_bytes(const tobi_cell_points *p, int wide)
+{
+    tobi_multigrid m = { .points = *p, .wide = wide };
+    const int64_t nodes = plan(&m);
+    return sum_bytes(&m, nodes);
+}
+
 int64_t tobi_multigrid_bytes(const tobi_multigrid *m)
 {
-    int64_t bytes = 0;
+    int64_t nodes = 0;
     if (!m->memory) return 0;
-    for (int l = 0; l < m->levels; l++) bytes += nodes_of(&m->grid[l])*GRID_ARRAYS*(int64_t)sizeof *m->memory;
-    return bytes + (int64_t)m->cells[0]*m->cells[1]*m->cells[2]*(int64_t)sizeof *m->corner;
+    for (int l = 0; l < m->levels; l++) nodes += nodes_of(&m->grid[l]);
+    return sum_bytes(m, nodes);
 }
 
 void tobi_multigrid_free(tobi_multigrid *m)

@@ -39,6 +39,8 @@ typedef struct tobi_grid_weights {
     const double *excess;            /* each point its own, the sum of its row; both NULL: nothing  */
 } tobi_grid_weights;
 
+/* Bytes of a grid over these cells, which it takes no memory for; as tobi_multigrid_create. */
+int64_t tobi_multigrid_plan_bytes(const tobi_cell_points *p, int wide);
 /* Memory for a grid over these cells; start, position and count may still be unknown. visits: of a level per
    cycle of the next finer one, 1: V-cycle, 2: W-cycle. TOBI_NO_MEMORY. */
 tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, int wide, int visits,

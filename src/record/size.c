@@ -13,6 +13,8 @@ static const double packed[] = { 1, 0.6, 0.72, 1.9 };
 
 enum { HEAD = 1900, HISTORY_ROW = 300, BODY_ROW = 400, LIST_ENTRY = 110, PICTURE = 100000,
        NODE = 80, PIECE = 128, CHECKPOINT = 30000, CHECKPOINT_PARTICLE = 90 };
+/* Bytes of a particle while an output is taken: nine numbers at a time; the search for pieces of solids. */
+enum { BUFFER = 9*sizeof(double), PIECES = 150 };
 
 /* A point with its cell, and the fields of the fluid's or the bodies' particles. */
 static double row_bytes(const tobi_run *run, int bodies)
@@ -90,7 +92,11 @@ tobi_status tobi_run_estimate(tobi_world *world, const tobi_output_def *output, 
                       output->surfaces*tobi_world_line_count(world),
               tables = 1 + (bodies > 0) + (tobi_world_probe_count(world) > 0) +
                        (tobi_world_line_count(world) > 0) + (tobi_world_joint_count(world) > 0);
+    const int search = tobi_world_solid_count(world) > 0 ? PIECES : 0;
+    const double taken = (double)particles*(row_bytes(&run, 0) + BUFFER + search) +
+                         (double)body_particles*row_bytes(&run, 1);
     *size = size_output(&run, (double)particles, (double)body_particles, lists);
+    size->memory = taken;
     size->outputs = tobi_record_count(output->interval, end);
     /* Besides: the list of all, resolved.json, summary.json. */
     size->files = (double)size->outputs*size->files + lists + tables + 3 + 2*checkpoints;

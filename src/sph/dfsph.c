@@ -549,6 +549,11 @@ static void follow_gravity(tobi_system *s, int loaded)
     if (!loaded) sph_reference_follow(s, &m->view, m->kernel, &surface);
 }
 
+static int64_t estimate(const tobi_system *s, const tobi_system_plan *plan)
+{
+    return tobi_multigrid_plan_bytes(&plan->cells, GRID_WIDTH) + plan->particles*sph_undo_row_bytes(s);
+}
+
 static void account(const tobi_system *s, tobi_account *a)
 {
     const dfsph *m = s->state;
@@ -583,14 +588,12 @@ const tobi_method tobi_dfsph = {
     .take_back = take_back,
     .begin = begin,
     .forces = forces,
-    .solve = solve,
-    .move = move,
-    .finish = sph_finish,
+    .solve = solve, .move = move, .finish = sph_finish,
     .refresh = refresh,
-    .read = sph_read,
-    .derive = derive,
+    .read = sph_read, .derive = derive,
     .memory = list_memory,
     .follow_gravity = follow_gravity,
+    .estimate = estimate,
     .account = account,
     .free = free_state,
 };

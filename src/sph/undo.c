@@ -85,6 +85,11 @@ void sph_undo_restore(const sph_undo *u, tobi_system *s, double *memory, int n)
     }
 }
 
+int64_t sph_undo_row_bytes(const tobi_system *s)
+{
+    return tobi_particles_state_bytes(s->method->fields, s->method->needs ? s->method->needs(s, 0) : 0);
+}
+
 int64_t sph_undo_bytes(const sph_undo *u, const tobi_system *s)
 {
     int64_t row = 0;

@@ -24,6 +24,8 @@ tobi_status sph_undo_begin(sph_undo *u, const tobi_system *s, const double *memo
 tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, int all, tobi_error *err);
 /* Takes the step back; not after positions have advanced, unless all was kept. */
 void sph_undo_restore(const sph_undo *u, tobi_system *s, double *memory, int n);
+/* Of a particle in the first step, when it keeps most; before there is a state. */
+int64_t sph_undo_row_bytes(const tobi_system *s);
 /* Allocated. */
 int64_t sph_undo_bytes(const sph_undo *u, const tobi_system *s);
 void sph_undo_free(sph_undo *u);

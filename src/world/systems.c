@@ -145,13 +145,51 @@ static int64_t row_bytes(const tobi_world *w, const tobi_system *s)
            (s->method->solids ? 0 : TOBI_CELLS_ROW + (s->method->packs_lists ? TOBI_CELLS_FAR : 0));
 }
 
-/* Beside the fields: neighbour lists and what a stopped step is taken back from, or sorting, tiles and nodes
-   of the grid (seen: 60 to 90). */
-static int64_t list_bytes(const tobi_system *s)
+/* Sorting, tiles and nodes of the grid, of a particle of solids (seen: 60 to 90). */
+static const int64_t SOLID_GRID = 80;
+/* Neighbours on the lattice of the start, the centre left out. */
+static int count_lattice(int dimension, double r)
 {
-    if (s->method->solids) return 80;
-    double r = s->smoothing.h/s->smoothing.spacing;
-    return (int64_t)((s->method->packs_lists ? 2 : 4)*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
+    const int far = (int)r, deep = dimension == 3 ? far : 0;
+    int count = -1;
+    for (int z = -deep; z <= deep; z++)
+        for (int y = -far; y <= far; y++)
+            for (int x = -far; x <= far; x++) count += x*x + y*y + z*z <= r*r;
+    return count;
+}
+
+/* Entries of a list, in whole groups of eight: as on the lattice, or as many as are in the ball or disc of
+   the kernel, with half of a group. The sides of the liquid cut off some: a ball reaches 3/8 of its radius
+   beyond a side in the mean over the places in it, a disc 4/(3 pi). */
+static double guess_entries(const tobi_world *w, const tobi_system *s)
+{
+    const int solid = s->box.dimension == 3, size = s->method->packs_lists ? 2 : 4;
+    const double r = s->smoothing.h/s->smoothing.spacing, beyond = solid ? 0.375 : 0.424, more = 1 + 1.0/64,
+                 ball = (solid ? 4.19*r*r*r : 3.14*r*r) - 1;
+    double sum = fmax(8*((count_lattice(s->box.dimension, r) + 7)/8), ball + 3.5);
+    for (int a = 0; a < s->box.dimension; a++) {
+        double lower = INFINITY, upper = -INFINITY;
+        for (int k = 0; k < w->region_count; k++) {
+            if (&w->system[w->regions[k].system] != s) continue;
+            lower = fmin(lower, w->regions[k].lower[a]);
+            upper = fmax(upper, w->regions[k].upper[a]);
+        }
+        if (upper > lower && !s->box.periodic[a])
+            sum *= fmax(1 - beyond*s->smoothing.h/(upper - lower), 0.5);
+    }
+    return fmax(more*sum, TOBI_CELLS_LIST/size);
+}
+
+static int64_t estimate_system(const tobi_world *w, const tobi_system *s, int64_t count)
+{
+    const int64_t fields = count*row_bytes(w, s), entry = s->method->packs_lists ? 2 : 4;
+    tobi_cells cells = { 0 };
+    tobi_particles none = { 0 };
+    if (s->method->solids || count == 0) return fields + count*SOLID_GRID;
+    tobi_cells_plan(&cells, &s->box, s->smoothing.h, count);
+    const tobi_system_plan plan = { tobi_cells_points(&cells, &s->box, &none), count, guess_entries(w, s) };
+    return fields + 4*cells.total + (int64_t)(plan.entries*(double)count)*entry +
+           (s->method->estimate ? s->method->estimate(s, &plan) : 0);
 }
 
 tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles,
@@ -169,7 +207,7 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
             if (w->regions[r].system == k) count += tobi_world_guess_particles(w, &w->regions[r]);
         if (w->started) count = s->particles.count;
         *fluid_particles += count;
-        *bytes += count*(row_bytes(w, s) + list_bytes(s));
+        *bytes += estimate_system(w, s, count);
     }
     for (int k = 0; k < w->sim.body_count; k++) *body_particles += w->sim.bodies[k].particle_count;
     *bytes += *body_particles*48;
@@ -279,10 +317,7 @@ tobi_status tobi_world_start_system(tobi_world *w, tobi_system *s, tobi_error *e
 
 static void account_particles(const tobi_particles *p, unsigned needs, tobi_account *a)
 {
-    int64_t kept = 0;
-    void *data;
-    const tobi_field *f;
-    for (int k = 0; (f = tobi_particles_state(p, k, &data)); k++) kept += (int64_t)f->bytes;
+    const int64_t kept = tobi_particles_state_bytes(p->list, needs);
     tobi_account_add(a, "state of the particles", p->capacity*kept);
     tobi_account_add(a, "other fields of the particles",
                      p->capacity*(tobi_particles_row_bytes(p->list, needs) - kept));

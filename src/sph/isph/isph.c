@@ -427,6 +427,12 @@ void isph_read(const tobi_system *s, const char *field, int64_t i, double *out)
     else sph_read(s, field, i, out);
 }
 
+int64_t isph_estimate(const tobi_system *s, const tobi_system_plan *plan)
+{
+    const tobi_isph_def *def = s->method == &tobi_isph ? s->def : NULL;      /* eisph has no other solver */
+    return isph_solver_estimate(def, plan) + plan->particles*sph_undo_row_bytes(s);
+}
+
 void isph_account(const tobi_system *s, tobi_account *a)
 {
     const isph *m = s->state;

@@ -297,6 +297,14 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
     return report;
 }
 
+int64_t isph_solver_estimate(const tobi_isph_def *def, const tobi_system_plan *plan)
+{
+    const int64_t entries = (int64_t)(plan->entries*(double)plan->particles),
+                  krylov = def ? krylov_work(def, plan->particles) : 0;
+    return plan->particles*row_bytes() + entries*(int64_t)sizeof(float) + krylov*(int64_t)sizeof(double) +
+           tobi_multigrid_plan_bytes(&plan->cells, 1);
+}
+
 void isph_solver_account(const isph_solver *m, tobi_account *a)
 {
     tobi_account_add(a, "rows of the matrix", (m->rows + TOBI_PAD_ROWS)*row_bytes());

@@ -77,6 +77,7 @@ void isph_solver_begin(isph_solver *m, tobi_system *s, const tobi_isph_def *def)
 tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err);
 /* Assembles and solves as def says; particles.pressure is the start and receives the answer. */
 tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s);
-/* What is allocated. */
+/* Bytes that will be allocated; def NULL: without room for other solvers than sweeps. What is. */
+int64_t isph_solver_estimate(const tobi_isph_def *def, const tobi_system_plan *plan);
 void isph_solver_account(const isph_solver *m, tobi_account *a);
 void isph_solver_free(isph_solver *m);

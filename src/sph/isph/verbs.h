@@ -40,6 +40,7 @@ void isph_measure(tobi_system *s);
 void isph_follow_gravity(tobi_system *s, int loaded);
 void isph_derive(tobi_system *s, const char *field);
 void isph_read(const tobi_system *s, const char *field, int64_t i, double *out);
+int64_t isph_estimate(const tobi_system *s, const tobi_system_plan *plan);
 void isph_account(const tobi_system *s, tobi_account *a);
 void isph_free_state(void *state);
 
@@ -48,4 +49,4 @@ void isph_free_state(void *state);
     .take_back = isph_take_back, .forces = isph_forces, .solve = isph_solve, .move = isph_move,     \
     .finish = sph_finish, .refresh = isph_refresh, .read = isph_read, .derive = isph_derive,         \
     .measure = isph_measure, .follow_gravity = isph_follow_gravity, .memory = isph_list_memory,      \
-    .account = isph_account, .free = isph_free_state,
+    .estimate = isph_estimate, .account = isph_account, .free = isph_free_state,
