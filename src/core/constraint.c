@@ -290,7 +290,8 @@ static void set_motor(const tobi_constraints *c, const tobi_constraint *j, const
 {
     if (!row) return;
     row->released = 0;
-    row->active = row->motor > 0 && c->dt > 0 && (isinf(j->motor.most) || tobi_motor_follows(j, bodies));
+    row->active = row->motor > 0 && c->dt > 0 && !j->motor.over &&
+                  (isinf(j->motor.most) || tobi_motor_follows(j, bodies));
 }
 
 void tobi_constraints_factor(tobi_constraints *c, const tobi_body *bodies)

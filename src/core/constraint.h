@@ -22,6 +22,9 @@ typedef struct tobi_motor {
     double impulse;                      /* N m s about the axis on the body, in this step              */
     double guess[3];                     /* N m on the body, where a liquid's step begins: of a torque, or
                                             of a motor at its bound                                     */
+    double known;                        /* N m s, of its row, before a liquid's pressure                */
+    int over;                            /* 1, -1: the pressure of this step has shown that it is at its
+                                            bound                                                       */
     int is_set;                          /* 1: a control program tells it: `set` from the next step on   */
     double set, last;                    /* that, and `value` of the last step that was made             */
 } tobi_motor;
@@ -134,6 +137,11 @@ void tobi_motor_bound(const tobi_constraints *c, const tobi_constraint *j, tobi_
 int tobi_motor_limit(tobi_constraints *c, int row);
 /* Whether a row that is none has an impulse within its bound, or wants one: then it is a row again. */
 int tobi_motor_engage(const tobi_constraints *c, tobi_constraint_row *row, double impulse);
+/* For liquids that may solve for their pressure again. Keeps the impulses of rows as `known`, N s, N m s. */
+void tobi_motors_know(tobi_constraints *c);
+/* With those of the pressure in `impulse`, N, N m: whether motors are beyond their bound, which then are
+   `over` and act at it. */
+int tobi_motors_overrun(tobi_constraints *c, double dt);
 /* N m or N, and W that damper and motor take from the bodies, after a step of dt; 0: not known. */
 void tobi_motor_report(tobi_constraint *j, const tobi_body *bodies, double dt);
 

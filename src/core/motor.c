@@ -2,7 +2,7 @@
    along it: its impulse in a step has a bound of either sign, and beyond it the row is none. So it drives as
    strongly as it must, the pressure of a liquid knows it, and nothing is to be remembered: whether it was
    obeyed, speed or angle show (docs/decisions/0134-motors.md).
-   Drawback: a liquid's pressure knows late that it meets it. */
+   Drawback: a liquid's pressure knows late that it meets it, and isph solves again. */
 #include "core/constraint.h"
 #include "geom/vec3.h"
 #include <math.h>
@@ -42,6 +42,7 @@ void tobi_motors_begin(tobi_constraints *c, tobi_body *bodies, double dt)
         tobi_constraint *j = &c->at[k];
         double lower, upper;
         j->rate_before = tobi_constraint_rate(j, bodies);
+        j->motor.over = 0;
         if (j->kind != TOBI_BETWEEN_MOTOR || j->motor.kind == TOBI_MOTOR_TORQUE) continue;
         const double angle = tobi_constraint_place(j, bodies, 0), way = find_way(j, angle);
         find_stops(j, bodies, &lower, &upper);
@@ -134,6 +135,39 @@ int tobi_motor_engage(const tobi_constraints *c, tobi_constraint_row *row, doubl
     }
     row->active = 1;
     return 1;
+}
+
+/* Of motors the rows, one each in the order of the joints. */
+static int next_row(const tobi_constraints *c, int row)
+{
+    while (row < c->rows && !c->row[row].motor) row++;
+    return row;
+}
+
+void tobi_motors_know(tobi_constraints *c)
+{
+    for (int k = 0, row = 0; k < c->count; k++) {
+        if (!c->at[k].motor.kind) continue;
+        row = next_row(c, row);
+        c->at[k].motor.known = c->impulse[row++];
+    }
+}
+
+int tobi_motors_overrun(tobi_constraints *c, double dt)
+{
+    int any = 0;
+    for (int k = 0, row = 0; k < c->count; k++) {
+        tobi_motor *m = &c->at[k].motor;
+        if (!m->kind) continue;
+        row = next_row(c, row);
+        const tobi_constraint_row *r = &c->row[row];
+        const double sum = -(m->known + dt*c->impulse[row++]);
+        if (!r->active || !(fabs(sum) > dt*m->most*(1 + ROUNDING))) continue;
+        m->over = sum > 0 ? 1 : -1;
+        for (int a = 0; a < 3; a++) m->guess[a] = m->over*m->most*r->axis[a];
+        any = 1;
+    }
+    return any;
 }
 
 void tobi_motor_report(tobi_constraint *j, const tobi_body *bodies, double dt)

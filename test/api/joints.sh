@@ -119,6 +119,19 @@ for method in dfsph isph wcsph eisph; do
     check "$method: a motor at its bound sets a light flap in motion in water" \
         awk -F, 'NR > 1 && ($5 < -0.01 || $5 > 40*$1 + 0.1) { bad = 1 } END { exit bad || $5 < 30*$1 }' light/joints.csv
 done
+# The same along a guide, with less force than the added mass asks for: the speed is reached late, and kept.
+cat > push.json <<'END2'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.025, "end_time": 0.1,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.4] } } ] } ],
+  "bodies": [ { "name": "plate", "box": { "min": [0.48, 0.05], "max": [0.54, 0.35] }, "dynamics": "free",
+                "density": 100, "guide": { "axis": [1, 0], "motor": { "speed": 0.2, "force_max": 300 } } } ],
+  "output": { "interval": 0.01 } }
+END2
+for method in dfsph isph wcsph eisph; do
+    "$program" run push.json --out push --quiet --force --set method=$method > out.txt 2>&1
+    check "$method: a motor at its bound pushes a light plate through water and does not throw it" \
+        awk -F, 'NR > 1 && ($10 < 0 || $10 > 0.2001) { bad = 1 } END { exit bad || $10 < 0.19 }' push/bodies.csv
+done
 cat > slides.json <<'END2'
 { "dimension": 2, "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.025, "end_time": 0.1,
   "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.3] } } ] } ],

@@ -406,7 +406,9 @@ static void join(isph_solver *m, tobi_system *s)
         memcpy(c->inverse[k], b->mobility, sizeof b->mobility);
     }
     tobi_constraints_factor(c, s->sim->bodies);
+    memset(c->impulse, 0, (size_t)c->rows*sizeof *c->impulse);
     tobi_couple_obey(s, 1);
+    tobi_motors_know(c);
     for (int k = 0; k < c->slots; k++)
         memcpy(m->body[c->body[k]].explicit_change, sph_of(s)->links.answer[c->body[k]],
                sizeof m->body->explicit_change);
@@ -447,6 +449,22 @@ void isph_forces_predict(isph_solver *m, tobi_system *s)
         memcpy(m->body[k].expected, sph_of(s)->links.answer[k], sizeof m->body->expected);
     isph_bodies_accelerate(m, s, s->dt);
     isph_bodies_refresh_images(m);
+}
+
+/* What isph_forces_predict gave the mirrors is taken back. */
+int isph_forces_overrun(isph_solver *m, tobi_system *s)
+{
+    tobi_constraints *c = &s->sim->constraints;
+    double (*now)[6] = sph_of(s)->links.answer;
+    if (!m->coupled || c->count == 0) return 0;
+    memset(c->impulse, 0, (size_t)c->rows*sizeof *c->impulse);
+    answer(m, s, m->view.solution);
+    if (!tobi_motors_overrun(c, s->dt)) return 0;
+    for (int k = 0; k < s->sim->body_count; k++) memcpy(now[k], m->body[k].explicit_change, sizeof now[k]);
+    isph_bodies_accelerate(m, s, -1);
+    for (int k = 0; k < s->sim->body_count; k++) memcpy(now[k], m->body[k].expected, sizeof now[k]);
+    isph_bodies_accelerate(m, s, -s->dt);
+    return 1;
 }
 
 static void add_spread(isph_solver *m, double *rows)

@@ -10,6 +10,9 @@ tobi_status isph_forces_find_coupling(isph_solver *m, tobi_system *s, tobi_error
 void isph_forces_predict(isph_solver *m, tobi_system *s);
 /* Into the sources, when rows are made: of the answer only what differs from that is new. */
 void isph_forces_add_expected(isph_solver *m);
+/* After the solve: whether motors of joints are beyond their bound with it. Then it is as before
+   isph_forces_predict but for that, and the solve is to be made again. */
+int isph_forces_overrun(isph_solver *m, tobi_system *s);
 /* product += how they answer pressures, Pa, one per particle, eq. (15b). */
 void isph_forces_add_answer(isph_solver *m, double *product, const double *pressure);
 /* At least the largest eigenvalue of what they add to the equation, over its diagonal; 0 without them. */

@@ -20,6 +20,8 @@
 
 /* Steps in a row that may fail to converge. */
 enum { FAILURES = 50 };
+/* Solves of a step again, as motors meet their bounds. */
+enum { MOST_AGAIN = 3 };
 
 /* Spacings that a wave of the depth at the start may go in a step beside soft solids. */
 static const double SOFT_COURANT = 0.08;
@@ -326,10 +328,15 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     isph *m = s->state;
     double t[TOBI_TOTALS], clock = tobi_clock();
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
-    isph_forces_predict(&m->solver, s);
-    sph_soft_predict(s, m->solver.sweeps.count == 0);
     m->solver.pockets = m->memory.vessel == SPH_VESSEL_POCKETS;
-    const tobi_linear_report report = isph_solver_run(&m->solver, s);
+    tobi_linear_report report;
+    int again = MOST_AGAIN;
+    do {
+        isph_forces_predict(&m->solver, s);
+        sph_soft_predict(s, m->solver.sweeps.count == 0);
+        report = isph_solver_run(&m->solver, s);
+    } while (again-- > 0 && isph_forces_overrun(&m->solver, s));
+    isph_solver_store(&m->solver);
     if (m->solver.pockets) m->memory.vessel = SPH_VESSEL_POCKETS;
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     TOBI_TRY(judge(s, m, &report, err));

@@ -20,7 +20,7 @@ static const double DAMPING = 0.7;
     X(double, m->view.inverse_diagonal) X(double, m->view.source) X(tobi_double3, m->work)           \
     X(tobi_float4, m->view.concentration_gradient) X(isph_tensor, m->view.inverse) X(float, m->view.trace) \
     X(float, m->view.gate) X(float, m->view.scale) X(float, m->view.concentration) \
-    X(float, m->view.body_share) X(uint8_t, m->pocket)
+    X(float, m->view.body_share) X(float, m->view.invariant) X(uint8_t, m->pocket)
 
 static int64_t row_bytes(void)
 {
@@ -44,7 +44,6 @@ static tobi_status reserve_rows(isph_solver *m, const tobi_particles *p, tobi_er
     ARRAYS(X)
 #undef X
     m->view.shift_velocity = (tobi_float4 *)m->work; /* free between the solves */
-    m->view.invariant = (float *)m->scratch;         /* the same */
     m->rows = p->capacity;
     return TOBI_OK;
 }
@@ -292,9 +291,13 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
                                         .stop = ask_stop };
     const tobi_linear_report report =
         m->sweeps.count > 0 ? isph_sweep_all(m, system.singular) : run_with_pockets(m, &system);
-    tobi_launch(m->exec, m->kernel->isph_store_pressure, &m->view, 0, n, NULL);
     m->view.gravity_dt = 0;
     return report;
+}
+
+void isph_solver_store(isph_solver *m)
+{
+    tobi_launch(m->exec, m->kernel->isph_store_pressure, &m->view, 0, m->view.count, NULL);
 }
 
 int64_t isph_solver_estimate(const tobi_isph_def *def, const tobi_system_plan *plan)

@@ -75,8 +75,10 @@ typedef struct isph_solver {
 void isph_solver_begin(isph_solver *m, tobi_system *s, const tobi_isph_def *def);
 /* Points the view at the particles and the list as they are now; makes room where there are more. */
 tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err);
-/* Assembles and solves as def says; particles.pressure is the start and receives the answer. */
+/* Assembles and solves as def says; particles.pressure is the start. May be called again. */
 tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s);
+/* Then: makes the solution the pressure of the particles; the scales in their records are lost. */
+void isph_solver_store(isph_solver *m);
 /* Bytes that will be allocated; def NULL: without room for other solvers than sweeps. What is. */
 int64_t isph_solver_estimate(const tobi_isph_def *def, const tobi_system_plan *plan);
 void isph_solver_account(const isph_solver *m, tobi_account *a);
