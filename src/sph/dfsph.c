@@ -291,8 +291,7 @@ static void apply_forces(tobi_system *s, dfsph *m, double *clock)
     if (m->view.exact) share = fmax(share - sph_viscous_share(s, &m->view, dt), 0);
     m->view.filter = (float)(share/(dt*scale*scale));
     sph_apply_forces(s, &m->view, m->kernel, clock);
-    sph_viscosity_solve(s, &m->view, m->kernel, NULL);
-    tobi_stage_end(&s->sim->stages, "viscosity", clock);
+    sph_viscosity_solve(s, &m->view, m->kernel, NULL, clock);
 }
 
 /* A surface particle has pressure 0 about a spacing outside, over its share of the surface. */

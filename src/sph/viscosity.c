@@ -159,7 +159,8 @@ static double find_rounding(const tobi_system *s)
     return FLT_EPSILON*s->dt*most*4*s->smoothing.rate;
 }
 
-void sph_viscosity_solve(tobi_system *s, sph_view *v, const sph_kernels *k, void (*expect)(tobi_system *s))
+void sph_viscosity_solve(tobi_system *s, sph_view *v, const sph_kernels *k, void (*expect)(tobi_system *s),
+                         double *clock)
 {
     static const tobi_cg_steps steps = { ends, precondition, turn, apply, advance };
     solve q = { .s = s, .v = v, .k = k };
@@ -181,6 +182,7 @@ void sph_viscosity_solve(tobi_system *s, sph_view *v, const sph_kernels *k, void
     s->info.viscosity_iterations = q.iterations;
     /* the true residual, in float */
     s->info.viscosity_failed = !(q.residual <= 4*fmax(q.goal, rounding*rounding));
+    tobi_stage_end(&s->sim->stages, "viscosity", clock);
 }
 
 typedef struct adding { const tobi_system *s; float share; } adding;

@@ -9,7 +9,8 @@ void sph_viscosity_begin(tobi_system *s, sph_view *v, const sph_kernels *k);
 /* v = the velocities that viscosity makes of those that all other forces have made. `expect` adds what the
    rest of the step is expected to add: gravity, and the pressure of the last step. The solve sees that, then
    it is taken off. NULL: the pressure alone, by the sums of dfsph. */
-void sph_viscosity_solve(tobi_system *s, sph_view *v, const sph_kernels *k, void (*expect)(tobi_system *s));
+void sph_viscosity_solve(tobi_system *s, sph_view *v, const sph_kernels *k, void (*expect)(tobi_system *s),
+                         double *clock);
 /* After the solve: v += share of what was expected. An equation of state follows the velocities with the
    pressure that viscosity has seen: without it what viscosity has taken of it would be taken again. */
 void sph_viscosity_expect(tobi_system *s, double share);

@@ -162,7 +162,7 @@ static void apply_forces(tobi_system *s, wcsph *m, double *clock)
     double scale = 2*s->smoothing.rate, motion = 10*s->sim->def.cfl*s->smoothing.spacing/m->sound;
     m->view.filter = (float)(m->def.filter/(fmax(s->dt, motion)*scale*scale));
     sph_apply_forces(s, &m->view, m->kernel, clock);
-    sph_viscosity_solve(s, &m->view, m->kernel, NULL);
+    sph_viscosity_solve(s, &m->view, m->kernel, NULL, clock);
 }
 
 /* The equation of state, and its force. */

@@ -56,6 +56,15 @@ static tobi_world *make_patch(const char *method, int implicit, int threads)
     return w;
 }
 
+/* s, in all steps. */
+static double spent_on_viscosity(const tobi_world *w)
+{
+    double seconds;
+    for (int k = 0; tobi_world_stage(w, k, &seconds); k++)
+        if (!strcmp(tobi_world_stage(w, k, NULL), "viscosity")) return seconds;
+    return 0;
+}
+
 static double spin_left(const char *method, int implicit)
 {
     tobi_world *w = make_patch(method, implicit, 2);
@@ -67,6 +76,7 @@ static double spin_left(const char *method, int implicit)
     printf("%s, %s: %.4f of the angular momentum is left, momentum %.1e of %.1e\n", method,
            implicit ? "implicit" : "explicit", end/begin, gain, size);
     if (!(gain < 1e-6*size)) fail_msg("momentum is not kept");
+    if (implicit && !(spent_on_viscosity(w) > 0)) fail_msg("no stage says how long viscosity took");
     tobi_world_destroy(w);
     return end/begin;
 }

@@ -303,7 +303,7 @@ void isph_forces(tobi_system *s)
     sph_apply_forces(s, &without, m->kernel, &clock);
     if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     isph_bodies_remove_hydrostatic(s);
-    sph_viscosity_solve(s, &without, m->kernel, expect);
+    sph_viscosity_solve(s, &without, m->kernel, expect, &clock);
     launch(s, m, m->kernel->isph_gravity, NULL);
     sph_openings_hold(s);
 }
