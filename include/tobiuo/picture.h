@@ -128,7 +128,8 @@ enum { TOBI_PICTURE_STAGES = 6 };
 TOBI_API const char *tobi_picture_stage_name(int stage);      /* NULL beyond the last */
 
 TOBI_API tobi_picture tobi_default_picture(void);
-/* Size, camera, look and plane of a view; its colours, arrows and body to follow need values and are left. */
+/* Size, camera, look and plane of a view; its colours, arrows and body to follow need values and are left.
+   The picture has its dimension and box: a size of 0 is fitted to them. */
 TOBI_API void tobi_picture_set_view(tobi_picture *picture, const tobi_view_def *view);
 
 /* A palette that is even to the eye, by name, and its number of colours; NULL for an unknown name. */

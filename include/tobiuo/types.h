@@ -394,7 +394,7 @@ typedef struct tobi_view_def {
     int         map;                  /* of colours, see tobi_color_map_name                          */
     const char *field;                /* that gives the colours; NULL = none                          */
     double      min, max;             /* values at the ends of the colours; equal = of each picture   */
-    int         width, height;        /* pixels                                                       */
+    int         width, height;        /* pixels; 0 = one that fits                                    */
     int         samples;              /* per pixel and axis                                           */
     int         arrows;               /* 1: velocities as arrows                                      */
     int         isolines, streamlines;      /* of equal value; so many along the longest edge         */

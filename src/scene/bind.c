@@ -177,7 +177,7 @@ static void bind_int(const slot *s)
     double v;
     if (!read_number(s, &v) || v != floor(v)) {
         report_kind(s, "a whole number");
-    } else if (check_range(s, s->place, v)) {
+    } else if (json_is_string(s->value) || check_range(s, s->place, v)) {
         int whole = (int)v;
         memcpy(s->member, &whole, sizeof whole);
     }

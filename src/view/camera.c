@@ -1,5 +1,5 @@
-/* Where the eye is: as given, or so that the domain fills the picture. Drawback: what lies outside of the
-   domain may be outside of the picture. */
+/* What a picture shows, its size, and where the eye is: as given, or so that the domain fills it. Drawback:
+   what lies outside of the domain may be outside of the picture. */
 #define _GNU_SOURCE 1
 #include "view/draw.h"
 #include <string.h>
@@ -141,4 +141,41 @@ tobi_status view_aim(canvas *v, const char *path, const tobi_picture *f, tobi_er
     if (f->dimension == 3) return aim_camera(v, path, f, err);
     aim_front(v, f);
     return TOBI_OK;
+}
+
+/* Movies need even sizes. */
+static int even(double pixels) { return 2*(int)lround(fmin(fmax(pixels, 16), 8192)/2); }
+
+/* The size that is not given: in 2-D the box fills the picture beside a colour bar and under a title. */
+static void fit_size(tobi_picture *p)
+{
+    const double wide = p->box_max[0] - p->box_min[0], high = p->box_max[1] - p->box_min[1];
+    double aspect = 16.0/9;
+    if (p->dimension == 2 && wide > 0 && high > 0) aspect = fmin(fmax(1.04*wide/high, 0.75), 4);
+    if (p->width == 0) p->width = even(p->height ? p->height*aspect : sqrt(1280*720*aspect));
+    if (p->height == 0) p->height = even(p->width/aspect);
+}
+
+void tobi_picture_set_view(tobi_picture *p, const tobi_view_def *view)
+{
+    if (!p || !view) return;
+    p->has_camera = view->angle > 0 && p->dimension == 3;
+    if (p->has_camera) p->field_of_view = view->angle;
+    p->width = view->width;
+    p->height = view->height;
+    fit_size(p);
+    p->samples = view->samples;
+    p->look = view->look;
+    p->axes = view->axes;
+    p->isolines = view->isolines;
+    p->streamlines = view->streamlines;
+    p->transparent = view->transparent;
+    p->slice = view->slice;
+    for (int a = 0; a < 3; a++) {
+        p->eye[a] = view->position[a];
+        p->target[a] = view->look_at[a];
+        p->clip_point[a] = view->clip_point[a];
+        p->clip_normal[a] = view->clip_normal[a];
+        p->clip |= view->clip_normal[a] != 0;
+    }
 }

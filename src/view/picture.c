@@ -17,29 +17,6 @@ tobi_picture tobi_default_picture(void)
     };
 }
 
-void tobi_picture_set_view(tobi_picture *p, const tobi_view_def *view)
-{
-    if (!p || !view) return;
-    p->has_camera = view->angle > 0 && p->dimension == 3;
-    if (p->has_camera) p->field_of_view = view->angle;
-    p->width = view->width;
-    p->height = view->height;
-    p->samples = view->samples;
-    p->look = view->look;
-    p->axes = view->axes;
-    p->isolines = view->isolines;
-    p->streamlines = view->streamlines;
-    p->transparent = view->transparent;
-    p->slice = view->slice;
-    for (int a = 0; a < 3; a++) {
-        p->eye[a] = view->position[a];
-        p->target[a] = view->look_at[a];
-        p->clip_point[a] = view->clip_point[a];
-        p->clip_normal[a] = view->clip_normal[a];
-        p->clip |= view->clip_normal[a] != 0;
-    }
-}
-
 static tobi_status check_mesh(const char *path, const tobi_picture_mesh *m, int number, tobi_error *err)
 {
     if ((m->vertex_count > 0 && !m->vertices) || (m->triangle_count > 0 && !m->triangles))

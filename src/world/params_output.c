@@ -65,10 +65,12 @@ const tobi_param_table tobi_probe_table = {
     { .key = "picture.max", REAL, AT(type, in max), RANGE(-1e30, 1e30), \
       .unit = "that of the field", \
       .doc = "Value at the upper end; not above min: each picture has the range of its own values." }, \
-    { .key = "picture.width", INT, AT(type, in width), .def = { 1280 }, RANGE(16, 8192), \
-      .unit = "pixels", .doc = "Width of the pictures." }, \
-    { .key = "picture.height", INT, AT(type, in height), .def = { 720 }, RANGE(16, 8192), \
-      .unit = "pixels", .doc = "Height of the pictures." }, \
+    { .key = "picture.width", INT, AT(type, in width), RANGE(16, 8192), .unit = "pixels", .text = "fit", \
+      .doc = "Width of the pictures; fit: by their height, without one 1280 in 3-D, and in 2-D such that " \
+             "the domain fills them." }, \
+    { .key = "picture.height", INT, AT(type, in height), RANGE(16, 8192), .unit = "pixels", .text = "fit", \
+      .doc = "Height of the pictures; fit: in 3-D 9/16 of their width, in 2-D as the domain is, from 1/4 " \
+             "to 4/3 of their width." }, \
     { .key = "picture.samples", INT, AT(type, in samples), .def = { 2 }, RANGE(1, 4), \
       .unit = "1", .doc = "Samples per pixel and axis: more make finer edges and take longer." }, \
     { .key = "picture.follow", TEXT, AT(type, in follow), .unit = "name", \

@@ -305,10 +305,38 @@ static void wrong_calls_are_refused(void **state)
     assert_null(d);
 }
 
+static void check_size(int dimension, double wide, double high, int given[2], int width, int height)
+{
+    const tobi_view_def v = { .width = given[0], .height = given[1], .samples = 1 };
+    tobi_picture f = tobi_default_picture();
+    f.dimension = dimension;
+    f.box_max[0] = f.box_min[0] + wide, f.box_max[1] = f.box_min[1] + high;
+    tobi_picture_set_view(&f, &v);
+    if (f.width != width || f.height != height)
+        fail_msg("%d-D, %g x %g m: %d x %d pixels, not %d x %d", dimension, wide, high, f.width, f.height,
+                 width, height);
+}
+
+/* Pixels: 1280 x 720 in all, as long as the box and a colour bar, from 3 : 4 to 4 : 1. */
+static void sizes_fit(void **state)
+{
+    (void)state;
+    check_size(3, 9, 1, (int[2]){ 0, 0 }, 1280, 720);
+    check_size(3, 9, 1, (int[2]){ 3840, 0 }, 3840, 2160);
+    check_size(3, 9, 1, (int[2]){ 0, 180 }, 320, 180);
+    check_size(2, 1, 1, (int[2]){ 0, 0 }, 980, 942);
+    check_size(2, 9, 1, (int[2]){ 0, 0 }, 1920, 480);
+    check_size(2, 1, 9, (int[2]){ 0, 0 }, 832, 1110);
+    check_size(2, 2, 1, (int[2]){ 1040, 0 }, 1040, 500);
+    check_size(2, 9, 1, (int[2]){ 0, 8192 }, 8192, 8192);
+    check_size(2, 9, 1, (int[2]){ 101, 77 }, 101, 77);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(materials_have_looks), cmocka_unit_test(small_times_and_great_speeds),
+        cmocka_unit_test(sizes_fit), cmocka_unit_test(materials_have_looks),
+        cmocka_unit_test(small_times_and_great_speeds),
         cmocka_unit_test(numbers_have_their_digits), cmocka_unit_test(numbers_at_axes_are_whole),
         cmocka_unit_test(solids_beside_liquids_have_colors), cmocka_unit_test(bodies_are_found_by_name),
         cmocka_unit_test(fields_of_one_kind), cmocka_unit_test(isolines_of_one_kind),
