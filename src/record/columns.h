@@ -133,6 +133,11 @@
       "changes its shape.") \
     B("contact_work", "J", work[1], "Done on it by contact_force and contact_torque since the start.")
 
+/* The last columns of bodies.csv, which it has in 2-D alone. */
+#define BODY_2D(B) \
+    B("angle", "degrees", run->works.angle[k]*180/acos(-1), \
+      "Turn since the rest pose, counterclockwise, with whole turns; in 2-D.")
+
 /* S(name, unit, value, meaning): solids.csv after time and name, likewise. */
 #define SOLID(S) \
     V3(S, "position", "m", i.centre, "Centre of mass.") \

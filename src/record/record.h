@@ -33,8 +33,9 @@ enum { TOBI_BODY_FORCES = 7 };
 typedef struct tobi_body_tally { double time, impulse[TOBI_BODY_FORCES][3]; } tobi_body_tally;
 typedef struct tobi_solid_tally { double time, impulse[3]; } tobi_solid_tally;    /* of liquids */
 
-/* Work since the start, J: on each body by particles and by contact, taken by each joint, by all lines. */
-typedef struct tobi_works { double (*body)[2], *joint, lines; } tobi_works;
+/* Work since the start, J: on each body by particles and by contact, taken by each joint, by all lines; in
+   2-D how far each body has turned, rad. */
+typedef struct tobi_works { double (*body)[2], *joint, lines, *angle; } tobi_works;
 
 /* One field to write. */
 typedef struct tobi_record_field {

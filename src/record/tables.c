@@ -84,7 +84,9 @@ tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continue
 static const tobi_csv_column history_columns[] = { HISTORY(H) };
 #undef H
 #define B(name, unit, value, doc) { name, NULL },
-static const tobi_csv_column body_columns[] = { { "time", NULL }, { "name", NULL }, BODY(B) };
+static const tobi_csv_column body_columns[] = { { "time", NULL }, { "name", NULL }, BODY(B) BODY_2D(B) };
+static const tobi_csv_column flat_columns[] = { BODY_2D(B) };
+enum { FLAT = sizeof flat_columns/sizeof *flat_columns };
 #undef B
 
 #define S(name, unit, value, doc) { name, NULL },
@@ -96,7 +98,8 @@ static const tobi_column history[] = { HISTORY(H) };
 #undef H
 #define B(name, unit, value, doc) { name, unit, doc },
 static const tobi_column body[] = {
-    { "time", "s", "Simulated time." }, { "name", "text", "Name of the body." }, BODY(B) };
+    { "time", "s", "Simulated time." }, { "name", "text", "Name of the body." }, BODY(B)
+    BODY_2D(B) };
 #undef B
 #define S(name, unit, value, doc) { name, unit, doc },
 static const tobi_column solid[] = {
@@ -156,11 +159,12 @@ void tobi_tables_count_missing(tobi_run *run)
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
 {
     const double last = continued ? tobi_record_time(run, run->outputs - 1) : 0;
+    const int flat = run->world->sim.def.dimension == 2;
     TOBI_TRY(tobi_table_open(run, "history.csv", continued, last, history_columns,
                         tables[TOBI_TABLE_HISTORY].count, &run->history, err));
     if (tobi_world_body_count(run->world) > 0)
         TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, last, body_columns,
-                            tables[TOBI_TABLE_BODIES].count, &run->bodies, err));
+                            tables[TOBI_TABLE_BODIES].count - (flat ? 0 : FLAT), &run->bodies, err));
     if (run->world->sim.soft.solids)
         TOBI_TRY(tobi_table_open(run, "solids.csv", continued, last, solid_columns,
                             tables[TOBI_TABLE_SOLIDS].count, &run->solids, err));
@@ -182,6 +186,7 @@ static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *e
         tobi_csv_add_text(run->bodies, tobi_world_body_name(run->world, k));
 #define B(name, unit, value, doc) tobi_csv_add_real(run->bodies, value);
         BODY(B)
+        if (run->world->sim.def.dimension == 2) { BODY_2D(B) }
 #undef B
         TOBI_TRY(tobi_csv_take_row(run->bodies, rows, err));
     }

@@ -4,19 +4,34 @@
 #include "world/energies.h"
 #include "world/world.h"
 #include <jansson.h>
+#include <math.h>
 #include <stdlib.h>
+
+/* In 2-D: the pose without whole turns, and those of before; a body turns by less than half in a step. */
+static void follow_turns(tobi_run *run)
+{
+    const double turn = 2*acos(-1);
+    for (int k = 0; k < tobi_world_body_count(run->world); k++) {
+        const double *q = run->world->sim.bodies[k].info.orientation, pose = 2*atan2(q[3], q[0]);
+        double *angle = &run->works.angle[k];
+        *angle = pose + turn*round((*angle - pose)/turn);
+    }
+}
 
 bool tobi_works_open(tobi_run *run)
 {
     run->works.body = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->works.body);
     run->works.joint = calloc((size_t)tobi_world_joint_count(run->world) + 1, sizeof *run->works.joint);
-    return run->works.body && run->works.joint;
+    run->works.angle = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->works.angle);
+    if (run->works.angle) follow_turns(run);
+    return run->works.body && run->works.joint && run->works.angle;
 }
 
 void tobi_works_free(tobi_run *run)
 {
     free(run->works.body);
     free(run->works.joint);
+    free(run->works.angle);
 }
 
 void tobi_works_add(tobi_run *run, double dt)
@@ -27,6 +42,7 @@ void tobi_works_add(tobi_run *run, double dt)
         for (int by = 0; by < 2; by++) w->body[k][by] += dt*run->world->sim.bodies[k].power[by];
     for (int k = 0; tobi_world_joint(run->world, k, &joint); k++) w->joint[k] += dt*joint.power;
     w->lines += dt*tobi_energy_line_power(run->world);
+    follow_turns(run);
 }
 
 double tobi_works_motions(const tobi_run *run)
@@ -46,12 +62,15 @@ double tobi_works_joints(const tobi_run *run)
 
 json_t *tobi_works_to_json(const tobi_run *run)
 {
-    json_t *bodies = json_array(), *joints = json_array();
+    json_t *bodies = json_array(), *joints = json_array(), *angles = json_array();
     for (int k = 0; k < tobi_world_body_count(run->world); k++)
         json_array_append_new(bodies, json_pack("[f, f]", run->works.body[k][0], run->works.body[k][1]));
+    for (int k = 0; k < tobi_world_body_count(run->world); k++)
+        json_array_append_new(angles, json_real(run->works.angle[k]));
     for (int k = 0; k < tobi_world_joint_count(run->world); k++)
         json_array_append_new(joints, json_real(run->works.joint[k]));
-    return json_pack("{s:o, s:o, s:f}", "bodies", bodies, "joints", joints, "lines", run->works.lines);
+    return json_pack("{s:o, s:o, s:o, s:f}", "bodies", bodies, "joints", joints, "angles", angles, "lines",
+                     run->works.lines);
 }
 
 bool tobi_works_from_json(const json_t *json, tobi_run *run)
@@ -59,7 +78,8 @@ bool tobi_works_from_json(const json_t *json, tobi_run *run)
     const size_t bodies = (size_t)tobi_world_body_count(run->world),
                  joints = (size_t)tobi_world_joint_count(run->world);
     const json_t *of_bodies = json_object_get(json, "bodies"), *of_joints = json_object_get(json, "joints"),
-                 *lines = json_object_get(json, "lines");
+                 *angles = json_object_get(json, "angles"), *lines = json_object_get(json, "lines");
+    follow_turns(run);
     if (!json) return true;
     if (json_array_size(of_bodies) != bodies || json_array_size(of_joints) != joints) return false;
     if (!json_is_number(lines)) return false;
@@ -67,6 +87,9 @@ bool tobi_works_from_json(const json_t *json, tobi_run *run)
     for (size_t k = 0; k < bodies; k++)
         for (size_t by = 0; by < 2; by++)
             run->works.body[k][by] = json_number_value(json_array_get(json_array_get(of_bodies, k), by));
+    for (size_t k = 0; k < bodies; k++)
+        run->works.angle[k] = json_number_value(json_array_get(angles, k));
+    follow_turns(run);
     for (size_t k = 0; k < joints; k++)
         run->works.joint[k] = json_number_value(json_array_get(of_joints, k));
     return true;

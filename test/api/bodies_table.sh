@@ -1,0 +1,44 @@
+#!/bin/bash
+# bodies.csv: the angle of bodies in 2-D over whole turns, also after a resume; checkpoints that know no works.
+# usage: bodies_table.sh PROGRAM     works in a fresh folder that it removes; last line: "N passed, N failed"
+set -uo pipefail
+. "$(dirname "$0")/checks.sh" "$1"
+
+cat > spin.json <<'END2'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [2, 1] }, "spacing": 0.05, "end_time": 2, "gravity": [0, 0],
+  "method": "mlsmpm",
+  "bodies": [ { "name": "top", "box": { "min": [0.3, 0.4], "max": [0.7, 0.6] }, "dynamics": "free",
+                "angular_velocity": [0, 0, -10], "density": 1000 },
+              { "name": "rotor", "box": { "min": [1.3, 0.4], "max": [1.7, 0.6] },
+                "motion": { "rotation": { "axis": [0, 0, 1], "center": [1.5, 0.5], "rate": 450 } } } ],
+  "output": { "interval": 0.25 } }
+END2
+# Columns by name: 10 rad/s are 572.957795 degrees/s, and 80 kg of 0.4 m by 0.2 m have 80/60 kg m2.
+rows='FNR == 1 { for (k = 1; k <= NF; k++) at[$k] = k; next }'
+expect 0 "" run spin.json --out whole --quiet
+check "angles go on over whole turns" \
+    awk -F, "$rows"' { due = ($2 == "top" ? -572.957795 : 450)*$1 } ($at["angle"] - due)^2 > 1e-10 { bad = 1 }
+                     END { exit bad || NR != 19 }' whole/bodies.csv
+check "a top has half of I w^2" \
+    awk -F, "$rows"' $2 == "top" && ($at["kinetic_energy"] - 200.0/3)^2 > 1e-10 { bad = 1 } END { exit bad }' \
+    whole/bodies.csv
+expect 0 "" run spin.json --out parts --quiet --until 1
+cp -r parts older
+expect 0 "" resume parts --quiet --until 2
+check "and after a resume" cmp whole/bodies.csv parts/bodies.csv
+# A checkpoint from before works and turns were kept: both count from there on.
+for file in older/checkpoints/*.json; do
+    $python -c 'import json, sys
+state = json.load(open(sys.argv[1])); del state["works"]; json.dump(state, open(sys.argv[1], "w"))' "$file"
+done
+expect 0 "" resume older --quiet --until 2
+check "an older checkpoint goes on, but for whole turns" \
+    awk -F, "$rows"' $1 == 2 { off = ($at["angle"] - ($2 == "top" ? -1145.91559 : 900))/360; whole = int(off + (off < 0 ? -0.5 : 0.5)) }
+                     $1 == 2 && (off - whole)^2 > 1e-10 { bad = 1 } END { exit bad }' older/bodies.csv
+expect 0 "" run spin.json --out solid --quiet --until 0.1 --set dimension=3 --set domain.max='[2,1,1]' \
+    --set domain.min='[0,0,0]' --set gravity='[0,0,0]' --set bodies.top.box='{"min":[0.3,0.4,0.4],"max":[0.7,0.6,0.6]}' \
+    --set bodies.rotor.box='{"min":[1.3,0.4,0.4],"max":[1.7,0.6,0.6]}' --set bodies.rotor.motion.rotation.center='[1.5,0.5,0.5]'
+check "in 3-D there is none" test "$(head -1 solid/bodies.csv | grep -c angle,)$(head -1 solid/bodies.csv |
+    grep -c ',contact_work$')" = 01
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
