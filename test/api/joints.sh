@@ -165,6 +165,20 @@ expect 0 "" run slides.json --out held --quiet --force --set method=isph --set b
     --set bodies.buoy.guide.motor='{"speed":0}' --set bodies.piston.guide.motor='{"speed":0}' --set end_time=0.5
 check "a brake holds a buoy against its buoyancy" \
     awk -F, 'NR > 1 && $1 > 0.2 { sum += $15; n++ } END { exit !(n > 5 && (sum/n + 122.6)^2 < 16) }' held/joints.csv
+# A piston makes the same wave by a motor as by a motion.
+cat > wave.json <<'END2'
+{ "dimension": 2, "method": "isph", "domain": { "min": [0, 0], "max": [2, 0.6] }, "spacing": 0.025, "end_time": 1.5,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0.2, 0], "max": [2, 0.3] } } ] } ],
+  "bodies": [ { "name": "piston", "box": { "min": [0.15, 0], "max": [0.2, 0.55] }, "sealed": true, "dynamics": "free",
+                "guide": { "axis": [1, 0], "motor": { "position": 0, "amplitude": 0.04, "period": 1.2, "ramp": 1.2 } } } ],
+  "probes": [ { "name": "gauge", "kind": "level", "position": [0.6, 0.3] } ] }
+END2
+sed 's/"dynamics": "free",/"motion": { "surge": { "amplitude": 0.04, "period": 1.2, "ramp": 1.2 } } } ],/; /"guide"/d' wave.json > same.json
+expect 0 "" run wave.json --out wave --quiet
+expect 0 "" run same.json --out same --quiet
+check "a piston with a motor makes the wave of one with a motion" \
+    eval 'paste -d, <(tail -1 wave/probes.csv) <(tail -1 same/probes.csv) |
+          awk -F, "{ exit !((\$2 - 0.3)^2 > 1e-4 && (\$2 - \$4)^2 < 1e-9) }"'
 cat > towed.json <<'END2'
 { "dimension": 2, "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.025, "end_time": 0.1,
   "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.4] } } ] } ],
