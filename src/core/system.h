@@ -7,15 +7,15 @@
 
 enum { TOBI_RESTORED_ROW = 9, TOBI_MEMORY_LIMIT = 64 };
 
-/* Bytes of memory by what they hold. */
-enum { TOBI_ACCOUNT_LIMIT = 24 };
-/* What its size depends on. */
+/* What the memory of a system depends on, before there is one. */
 typedef struct tobi_system_plan {
     tobi_cell_points cells;
     int64_t particles;
     double entries;                  /* in the list of each, in the mean                               */
 } tobi_system_plan;
 
+/* Bytes of memory by what they hold. */
+enum { TOBI_ACCOUNT_LIMIT = 24 };
 typedef struct tobi_account {
     int count;
     const char *name[TOBI_ACCOUNT_LIMIT];
