@@ -61,7 +61,7 @@ static tobi_status refuse_most(const tobi_motor_def *d, int slides, tobi_error *
 
 static tobi_status check_keys(const tobi_motor_def *d, int slides, tobi_error *err)
 {
-    const char *load = words[slides].load, *most = words[slides].most;
+    const char *load = words[slides].load;
     const int count = is_number(d->speed) + is_number(d->angle) + is_number(d->torque) + (d->file != NULL);
     if (count != 1)
         return tobi_fail(err, TOBI_INVALID, "a motor has one of speed, %s, %s and file; this one has %s",
@@ -72,9 +72,6 @@ static tobi_status check_keys(const tobi_motor_def *d, int slides, tobi_error *e
     if ((d->amplitude != 0) != (d->period > 0))
         return refuse(err, d->period > 0 ? "period" : "amplitude", "a motor that swings has an amplitude and "
                                                                    "a period; this one has one of them");
-    if (!(d->torque_max >= 0))
-        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "the largest %s of a motor is below 0; allowed "
-                                          "is above 0, or 0 for no bound", load), "%s", most);
     return is_number(d->torque) ? refuse_most(d, slides, err) : TOBI_OK;
 }
 
