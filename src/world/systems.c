@@ -158,6 +158,18 @@ static int count_lattice(int dimension, double r)
     return count;
 }
 
+/* From where to where the regions of a system reach along an axis; upper below lower: it has none. */
+static void find_extent(const tobi_world *w, const tobi_system *s, int axis, double *lower, double *upper)
+{
+    *lower = INFINITY;
+    *upper = -INFINITY;
+    for (int k = 0; k < w->region_count; k++) {
+        if (&w->system[w->regions[k].system] != s) continue;
+        *lower = fmin(*lower, w->regions[k].lower[axis]);
+        *upper = fmax(*upper, w->regions[k].upper[axis]);
+    }
+}
+
 /* Entries of a list, in whole groups of eight: as on the lattice, or as many as are in the ball or disc of
    the kernel, with half of a group. The sides of the liquid cut off some: a ball reaches 3/8 of its radius
    beyond a side in the mean over the places in it, a disc 4/(3 pi). */
@@ -168,12 +180,8 @@ static double guess_entries(const tobi_world *w, const tobi_system *s)
                  ball = (solid ? 4.19*r*r*r : 3.14*r*r) - 1;
     double sum = fmax(8*((count_lattice(s->box.dimension, r) + 7)/8), ball + 3.5);
     for (int a = 0; a < s->box.dimension; a++) {
-        double lower = INFINITY, upper = -INFINITY;
-        for (int k = 0; k < w->region_count; k++) {
-            if (&w->system[w->regions[k].system] != s) continue;
-            lower = fmin(lower, w->regions[k].lower[a]);
-            upper = fmax(upper, w->regions[k].upper[a]);
-        }
+        double lower, upper;
+        find_extent(w, s, a, &lower, &upper);
         if (upper > lower && !s->box.periodic[a])
             sum *= fmax(1 - beyond*s->smoothing.h/(upper - lower), 0.5);
     }
@@ -219,12 +227,8 @@ double tobi_world_start_head(const tobi_world *w, const tobi_system *s)
 {
     double head = 0;
     for (int a = 0; a < s->box.dimension; a++) {
-        double lower = INFINITY, upper = -INFINITY;
-        for (int k = 0; k < w->region_count; k++) {
-            if (&w->system[w->regions[k].system] != s) continue;
-            lower = fmin(lower, w->regions[k].lower[a]);
-            upper = fmax(upper, w->regions[k].upper[a]);
-        }
+        double lower, upper;
+        find_extent(w, s, a, &lower, &upper);
         if (w->sim.opening_count > 0) head += fabs(w->sim.def.gravity[a])*s->box.size[a];
         else if (upper > lower) head += fabs(w->sim.def.gravity[a])*(upper - lower);
     }
