@@ -13,11 +13,11 @@ static const char *const others[] = { "elastic_energy", "body_kinetic_energy", "
                                       "spring_energy", NULL };
 
 const picture_row plot_history[] = {
-    { "energies", "Energy of fluids, solids and bodies", 0, {
+    { "energies", "Energy of fluids, solids and bodies; change and work since the start", 0, {
         { "kinetic energy, J", 0, 1, 0, 0, 0,
           { { "fluids and solids", "kinetic_energy", NULL, CURVE_LINE, 0, NULL, NULL },
             { "bodies", "body_kinetic_energy", NULL, CURVE_LINE, 1, "body_kinetic_energy", NULL } } },
-        { "change since the start, J", 0, 1, 0, 1, 0,
+        { "change, J", 0, 1, 0, 1, 0,
           { { "potential", "potential_energy", NULL, CURVE_LINE, 2, NULL, NULL },
             { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL, NULL },
             { "elastic", "elastic_energy", NULL, CURVE_LINE, 1, "elastic_energy", NULL },
@@ -27,7 +27,7 @@ const picture_row plot_history[] = {
             { "springs", "spring_energy", NULL, CURVE_LINE, 5, "spring_energy", NULL },
             { "sum of all", "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL,
               others } } },
-        { "work since the start, J", 0, 1, 0, 0, 0,
+        { "work, J", 0, 1, 0, 0, 0,
           { { "given by motions", "motion_work", NULL, CURVE_LINE, 0, "motion_work", NULL },
             { "taken by joints", "joint_work", NULL, CURVE_LINE, 1, "joint_work", NULL },
             { "taken by lines", "line_work", NULL, CURVE_LINE, 2, "line_work", NULL } } } } },
