@@ -147,6 +147,7 @@ static int64_t row_bytes(const tobi_world *w, const tobi_system *s)
 
 /* Sorting, tiles and nodes of the grid, of a particle of solids (seen: 60 to 90). */
 static const int64_t SOLID_GRID = 80;
+
 /* Neighbours on the lattice of the start, the centre left out. */
 static int count_lattice(int dimension, double r)
 {
