@@ -328,8 +328,9 @@ static void a_motion_gives_the_energy_that_the_water_gains(void **state)
                           start.potential_energy;
     assert_true(l.now.kinetic == 0 && l.now.potential == 0);
     assert_true(l.motions == -l.work);
-    /* 1000 kg/m3 x 10 m/s2 x 0.4 m x 0.25 m under water: 1000 N on the way, half of it in the mean */
-    if (!(l.motions > 60 && fabs(gained - l.motions) < 0.25*l.motions))
+    /* 1000 kg/m3 x 10 m/s2 x 0.4 m x 0.25 m under water: 1000 N on the way, half of it in the mean. The flat
+       side meets the water at once, which costs some. */
+    if (!(l.motions > 60 && fabs(gained - l.motions) < 0.12*l.motions))
         fail_msg("the water gained %g J, the motion gave %g", gained, l.motions);
     tobi_world_destroy(w);
 }
