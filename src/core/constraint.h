@@ -139,6 +139,8 @@ int tobi_motor_limit(tobi_constraints *c, int row);
 int tobi_motor_engage(const tobi_constraints *c, tobi_constraint_row *row, double impulse);
 /* For liquids that may solve for their pressure again. Keeps the impulses of rows as `known`, N s, N m s. */
 void tobi_motors_know(tobi_constraints *c);
+/* Whether there are motors by speed or angle with a bound. */
+int tobi_motors_bounded(const tobi_constraints *c);
 /* With those of the pressure in `impulse`, N, N m: whether motors are beyond their bound, which then are
    `over` and act at it. */
 int tobi_motors_overrun(tobi_constraints *c, double dt);

@@ -153,6 +153,15 @@ void tobi_motors_know(tobi_constraints *c)
     }
 }
 
+int tobi_motors_bounded(const tobi_constraints *c)
+{
+    for (int k = 0; k < c->count; k++) {
+        const tobi_motor *m = &c->at[k].motor;
+        if (m->kind && m->kind != TOBI_MOTOR_TORQUE && isfinite(m->most)) return 1;
+    }
+    return 0;
+}
+
 int tobi_motors_overrun(tobi_constraints *c, double dt)
 {
     int any = 0;

@@ -456,7 +456,7 @@ int isph_forces_overrun(isph_solver *m, tobi_system *s)
 {
     tobi_constraints *c = &s->sim->constraints;
     double (*now)[6] = sph_of(s)->links.answer;
-    if (!m->coupled || c->count == 0) return 0;
+    if (!m->coupled || !tobi_motors_bounded(c)) return 0;
     memset(c->impulse, 0, (size_t)c->rows*sizeof *c->impulse);
     answer(m, s, m->view.solution);
     if (!tobi_motors_overrun(c, s->dt)) return 0;

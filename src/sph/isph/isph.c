@@ -330,12 +330,14 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     m->solver.pockets = m->memory.vessel == SPH_VESSEL_POCKETS;
     tobi_linear_report report;
-    int again = MOST_AGAIN;
+    int again = MOST_AGAIN, iterations = 0;
     do {
         isph_forces_predict(&m->solver, s);
         sph_soft_predict(s, m->solver.sweeps.count == 0);
         report = isph_solver_run(&m->solver, s);
+        iterations += report.iterations;
     } while (again-- > 0 && isph_forces_overrun(&m->solver, s));
+    report.iterations = iterations;
     isph_solver_store(&m->solver);
     if (m->solver.pockets) m->memory.vessel = SPH_VESSEL_POCKETS;
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
