@@ -5,10 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#define SPACING(d) { "spacing", "m", d, 1e-7, 1e5, "particle spacing", 0 }
 #define UNTIL(t) { "until", "s", t, 1e-6, 1e5, "simulated time at which the run ends", 0 }
-#define LENGTH(name_, def_, doc_) { name_, "m", def_, 1e-6, 1e5, doc_, 0 }
-#define ACROSS(name_, def_, doc_) { name_, "m", def_, 1e-6, 1e5, doc_, 1 }
 #define TANK(l, w, h) \
     LENGTH("length", l, "of the tank, along x"), ACROSS("width", w, "of the tank, along y"), \
     LENGTH("height", h, "of the tank, along z")
@@ -23,13 +20,13 @@ double chosen(const family_choice *c, const char *option)
 
 /* --- parts of a scene ---------------------------------------------------------------------- */
 
-static void put_place(const family_choice *c, FILE *out, double x, double y, double z)
+void put_place(const family_choice *c, FILE *out, double x, double y, double z)
 {
     if (c->dimension == 2) fprintf(out, "[%.10g, %.10g]", x, z);
     else fprintf(out, "[%.10g, %.10g, %.10g]", x, y, z);
 }
 
-static void put_corners(const family_choice *c, FILE *out, const double low[3], const double high[3])
+void put_corners(const family_choice *c, FILE *out, const double low[3], const double high[3])
 {
     fputs("\"min\": ", out);
     put_place(c, out, low[0], low[1], low[2]);
@@ -37,8 +34,7 @@ static void put_corners(const family_choice *c, FILE *out, const double low[3], 
     put_place(c, out, high[0], high[1], high[2]);
 }
 
-/* All up to the fluids: the box from 0 to size, gravity g along -z turned by `tilt` degrees about y. */
-static void put_world(const family_choice *c, FILE *out, const double size[3], const char *title, double tilt)
+void put_head(const family_choice *c, FILE *out, const double size[3], const char *title, double tilt)
 {
     static const double origin[3];
     const double g = 9.81, turn = tilt*acos(-1)/180;
@@ -54,11 +50,16 @@ static void put_world(const family_choice *c, FILE *out, const double size[3], c
     put_corners(c, out, origin, size);
     fputs(" },     // its sides are walls without friction\n  \"gravity\": ", out);
     put_place(c, out, g*sin(turn), 0, -g*cos(turn));
-    fprintf(out, ",\n  \"spacing\": %.10g,\n  \"end_time\": %.10g,\n", chosen(c, "spacing"),
-            chosen(c, "until"));
+    fprintf(out, ",\n  \"spacing\": %.10g,\n", chosen(c, "spacing"));
 }
 
-static void put_water(const family_choice *c, FILE *out, const double low[3], const double high[3])
+static void put_world(const family_choice *c, FILE *out, const double size[3], const char *title, double tilt)
+{
+    put_head(c, out, size, title, tilt);
+    fprintf(out, "  \"end_time\": %.10g,\n", chosen(c, "until"));
+}
+
+void put_water(const family_choice *c, FILE *out, const double low[3], const double high[3])
 {
     fputs("  \"fluids\": [\n    { \"name\": \"water\", \"density\": 1000, \"viscosity\": 1.0e-3,\n"
           "      \"fill\": [ { \"box\": { ", out);
@@ -66,8 +67,7 @@ static void put_water(const family_choice *c, FILE *out, const double low[3], co
     fputs(" } } ] }\n  ],\n", out);
 }
 
-/* A sensor; kind "point" or "level". Text before the first: "", before others ",". */
-static void put_probe(const family_choice *c, FILE *out, int first, const char *name, const char *kind,
+void put_probe(const family_choice *c, FILE *out, int first, const char *name, const char *kind,
                       double x, double y, double z)
 {
     fprintf(out, "%s\n    { \"name\": \"%s\", ", first ? "" : ",", name);
@@ -291,49 +291,7 @@ static void write_slosh(const family_choice *c, FILE *out)
     put_output(c, out);
 }
 
-/* --- waves and a hose ---------------------------------------------------------------------- */
-
-static const family_option wave_options[] = {
-    SPACING(0.02), UNTIL(6), TANK(4, 0.1, 0.5), LENGTH("depth", 0.3, "of the water"),
-    LENGTH("wave-height", 0.06, "from trough to crest; of a solitary wave above the still water"),
-    { "period", "s", 1.2, 0, 1e5, "of regular waves; 0: one solitary wave", 0 },
-    LENGTH("maker-at", 0.3, "where the water begins: the face of the piston at rest"), { 0 } };
-
-static const char *object_wave(const family_choice *c)
-{
-    const double depth = chosen(c, "depth");
-    if (depth > chosen(c, "height")) return above;
-    if (chosen(c, "wave-height") > 0.78*depth)
-        return "--wave-height is more than 0.78 of --depth: such waves break";
-    return chosen(c, "maker-at") >= chosen(c, "length") ? "the piston stands beyond the tank" : NULL;
-}
-
-static void write_wave(const family_choice *c, FILE *out)
-{
-    const double size[3] = { chosen(c, "length"), chosen(c, "width"), chosen(c, "height") };
-    const double at = chosen(c, "maker-at"), depth = chosen(c, "depth"), thick = 4*chosen(c, "spacing");
-    const double low[3] = { at, 0, 0 }, high[3] = { size[0], size[1], depth };
-    const double back[3] = { at - thick, 0, 0 }, face[3] = { at, size[1], size[2] };
-    char name[16];
-    put_world(c, out, size, "a piston makes waves, by Biesel's or Goring's theory", 0);
-    put_water(c, out, low, high);
-    fputs("  \"bodies\": [\n    { \"name\": \"piston\", \"box\": { ", out);
-    put_corners(c, out, back, face);
-    fprintf(out, " },\n      \"motion\": { \"piston\": { \"depth\": %.10g, ", depth);
-    if (chosen(c, "period") > 0)
-        fprintf(out, "\"regular\": { \"height\": %.10g, \"period\": %.10g }, \"ramp\": %.10g } } }\n  ],\n",
-                chosen(c, "wave-height"), chosen(c, "period"), chosen(c, "period")/5);
-    else
-        fprintf(out, "\"solitary\": { \"height\": %.10g } } } }\n  ],\n", chosen(c, "wave-height"));
-    fputs("  \"probes\": [", out);
-    for (int k = 0; k < 3; k++) {
-        snprintf(name, sizeof name, "G%d", k + 1);
-        put_probe(c, out, k == 0, name, "level", at + (k + 1)*(size[0] - at)/4, size[1]/2, 0);
-    }
-    put_probe(c, out, 0, "wall", "point", size[0], size[1]/2, depth/2);
-    fputs("\n  ],\n", out);
-    put_output(c, out);
-}
+/* --- a hose -------------------------------------------------------------------------------- */
 
 static const family_option hose_options[] = {
     SPACING(0.005), UNTIL(1), TANK(0.06, 0.06, 0.12), LENGTH("depth", 0.015, "of the water at the start"),
@@ -385,8 +343,8 @@ static const family families[] = {
     { "sloshing", "water swings in a tank that is tilted, at once or to and fro", slosh_options, 1,
       object_static,
       write_slosh },
-    { "wave_tank", "a piston makes regular waves or a solitary one", wave_options, 1, object_wave,
-      write_wave },
+    { "wave_tank", "a piston makes regular waves, which end on a beach, or a solitary one", wave_options, 1,
+      object_wave, write_wave },
     { "hose", "a hose fills a glass", hose_options, 1, object_hose, write_hose },
     { "wave_impact", "a dam breaks onto a box (SPHERIC test 2)", impact_options, 1, object_impact,
       write_impact },

@@ -39,3 +39,24 @@ const family_option *family_common(void);
 /* The option by its index: of the family first, then of all; NULL past the end. */
 const family_option *family_option_at(const family *f, int index);
 double chosen(const family_choice *c, const char *option);
+/* new.c: 1 if the option was given, its default or not. */
+int is_given(const family_choice *c, const char *option);
+
+#define SPACING(d) { "spacing", "m", d, 1e-7, 1e5, "particle spacing", 0 }
+#define LENGTH(name_, def_, doc_) { name_, "m", def_, 1e-6, 1e5, doc_, 0 }
+#define ACROSS(name_, def_, doc_) { name_, "m", def_, 1e-6, 1e5, doc_, 1 }
+
+/* families.c: parts of a scene. A place has x along the tank, z up, y left out in 2-D. */
+void put_place(const family_choice *c, FILE *out, double x, double y, double z);
+void put_corners(const family_choice *c, FILE *out, const double low[3], const double high[3]);
+/* All up to the spacing: the box from 0 to size, gravity g along -z turned by `tilt` degrees about y. */
+void put_head(const family_choice *c, FILE *out, const double size[3], const char *title, double tilt);
+void put_water(const family_choice *c, FILE *out, const double low[3], const double high[3]);
+/* A sensor; kind "point" or "level". Text before the first: "", before others ",". */
+void put_probe(const family_choice *c, FILE *out, int first, const char *name, const char *kind,
+               double x, double y, double z);
+
+/* family_waves.c */
+extern const family_option wave_options[];
+const char *object_wave(const family_choice *c);
+void write_wave(const family_choice *c, FILE *out);

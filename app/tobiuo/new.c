@@ -217,11 +217,11 @@ static void put_number(FILE *out, const char *head, double value)
     fprintf(out, "_%s%s", head, text);
 }
 
-static int is_given(const family_choice *c, const char *name)
+int is_given(const family_choice *c, const char *option)
 {
     const family_option *o;
     for (int k = 0; (o = family_option_at(c->family, k)); k++)
-        if (strcmp(o->name, name) == 0) return c->given[k];
+        if (strcmp(o->name, option) == 0) return c->given[k];
     return 0;
 }
 

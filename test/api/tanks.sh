@@ -50,7 +50,9 @@ expect 2 "--post: '0.5' is not a whole number from 0 to 2" new kamra --post 0.5
 expect 1 "the box does not fit" new wave_impact --box-at 3.2
 expect 1 "the box is wider" new wave_impact --box-width 2
 expect 1 "--wave-height is more than 0.78 of --depth: such waves break" new wave_tank --wave-height 0.3
-expect 1 "the piston stands beyond the tank" new wave_tank --maker-at 5
+expect 1 "the piston stands beyond the tank" new wave_tank --length 4 --maker-at 5
+expect 1 "piston and beach fill the tank" new wave_tank --length 2
+expect 1 "a solitary wave, --period 0, has neither --ramp nor --beach" new wave_tank --period 0 --beach 2
 expect 1 "the glass is full before" new hose --depth 0.1
 expect 1 "the hose is wider than the glass" new hose --diameter 0.1
 for more in "sloshing --period 1.4" "sloshing --dimension 2 --period 1.4" "wave_tank --dimension 2 --period 0" "hose --dimension 2"; do
@@ -58,6 +60,25 @@ for more in "sloshing --period 1.4" "sloshing --dimension 2 --period 1.4" "wave_
     expect 0 "" run more --quiet --until 0.02 --force --out out_more
     rm -rf more
 done
+# A wave tank by its defaults: steady waves in front of the beach, little behind it.
+expect 0 "" new wave_tank --dimension 2 --spacing 0.03 waves
+for text in '"ramp": 2.4,' '"damping_zones": \[ { "box": { "min": \[3.9, 0\], "max": \[5.7, 0.5\]' '"end_time": 13.2,'; do
+    check "the wave tank has $text" grep -q "$text" waves/scene.json
+done
+expect 0 "" run waves --quiet --until 10.8 --out out_waves
+height() {     # COLUMN PERIOD-NUMBER: its largest less its least value, mm
+    awk -F, -v name="$1" -v n="$2" 'NR == 1 { for (k = 1; k <= NF; k++) if ($k == name) c = k; next }
+        $1 >= (n - 1)*1.2 && $1 < n*1.2 { if (!seen++ || $c > high) high = $c; if (seen == 1 || $c < low) low = $c }
+        END { printf "%.1f\n", 1000*(high - low) }' out_waves/probes.csv
+}
+check "waves of 60 mm, steady" python3 -c 'import sys; h = [float(x) for x in sys.argv[1:]]
+sys.exit(not (0.9*60 < min(h) and max(h) < 1.1*60 and max(h) - min(h) < 0.06*60))' "$(height "G1_level [m]" 7)" \
+    "$(height "G1_level [m]" 8)" "$(height "G1_level [m]" 9)"
+check "the beach takes them" python3 -c 'import sys; sys.exit(not float(sys.argv[1]) < 0.5*60)' "$(height "end_level [m]" 9)"
+expect 0 "" new wave_tank --dimension 2 --period 2.5 --wave-height 0.1 long_waves
+check "long waves by the first order" grep -q '"order": 1' long_waves/scene.json
+expect 0 "" new wave_tank --beach 0 --length 4 walled
+check "a tank without a beach" test "$(grep -c damping_zones walled/scene.json)" = 0
 # The far end goes down first in both dimensions: the water rises there.
 for dimension in 2 3; do
     expect 0 "" new sloshing --period 1.4 --spacing 0.05 --dimension $dimension more

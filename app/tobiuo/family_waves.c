@@ -1,0 +1,171 @@
+/* The wave tank that `tobiuo new` writes: piston, water, a beach a wave long, level sensors. Dimensions that
+   are left out follow from the length of the waves. Drawback: that length is by linear theory. */
+#include "family.h"
+#include <math.h>
+
+#define PI 3.14159265358979323846
+static const double G = 9.81;
+/* Wave lengths between piston and beach; periods that pass when the first waves have reached the beach. */
+static const double ROOM = 2, PASS = 6;
+/* H L^2/h^3 up to which a piston of second order makes no second crest (Madsen 1971). */
+static const double MADSEN = 8*PI*PI/3;
+/* Goring: a solitary wave reaches so far over its kappa to either side of its crest. */
+static const double REACH = 3.8;
+
+const family_option wave_options[] = {
+    SPACING(0.02),
+    { "until", "s", 0, 1e-6, 1e5, "end of the run; 0: six periods after waves reach the beach", 0 },
+    LENGTH("length", 0, "of the tank, along x; 0: two wave lengths and the beach"),
+    ACROSS("width", 0.1, "of the tank, along y"), LENGTH("height", 0.5, "of the tank, along z"),
+    LENGTH("depth", 0.3, "of the water"),
+    LENGTH("wave-height", 0.06, "from trough to crest; of a solitary wave above the still water"),
+    { "period", "s", 1.2, 0, 1e5, "of regular waves; 0: one solitary wave", 0 },
+    { "ramp", "periods", 2, 0, 100, "in which the stroke of the piston grows from 0", 0 },
+    { "beach", "wave lengths", 1, 0, 100, "of the damping zone at the far end; 0: none, a wall", 0 },
+    LENGTH("maker-at", 0.3, "where the water begins: the face of the piston at rest"), { 0 } };
+
+/* What follows from the choice. length, speed, group: of the waves, m, m/s, m/s; the others in m and s. */
+typedef struct plan { double length, speed, group, tank, beach, ramp, until; } plan;
+
+/* Up to two digits, as somebody would draw it. */
+static double round_up(double x)
+{
+    const double unit = pow(10, floor(log10(x)) - 1);
+    return ceil(x/unit - 1e-9)*unit;
+}
+
+static double tidy(double x) { return floor(x*1000 + 0.5)/1000; }
+
+/* k h of omega^2 = g k tanh kh, by Newton's method. */
+static double wave_number_depth(double period, double depth)
+{
+    const double deep = 4*PI*PI/(period*period*G)*depth;
+    double kh = deep/sqrt(tanh(deep));
+    for (int n = 0; n < 20; n++) kh -= (kh*tanh(kh) - deep)/(tanh(kh) + kh*(1 - tanh(kh)*tanh(kh)));
+    return kh;
+}
+
+static plan plan_regular(const family_choice *c)
+{
+    const double period = chosen(c, "period"), depth = chosen(c, "depth");
+    const double kh = wave_number_depth(period, depth), length = 2*PI*depth/kh;
+    plan p = { .length = length, .speed = length/period, .ramp = period*chosen(c, "ramp") };
+    p.group = p.speed*(0.5 + kh/sinh(2*kh));
+    if (chosen(c, "beach") > 0) p.beach = round_up(length*chosen(c, "beach"));
+    p.tank = chosen(c, "length") > 0 ? chosen(c, "length")
+                                     : round_up(chosen(c, "maker-at") + ROOM*length + p.beach);
+    p.until = chosen(c, "until");
+    const double way = p.tank - p.beach - chosen(c, "maker-at");
+    if (!(p.until > 0)) p.until = period*ceil((p.ramp + way/p.group)/period + PASS);
+    return p;
+}
+
+/* It runs through its own length to the far wall, and back. */
+static plan plan_solitary(const family_choice *c)
+{
+    const double depth = chosen(c, "depth"), height = chosen(c, "wave-height");
+    const double kappa = sqrt(0.75*height/(depth*depth*depth)), speed = sqrt(G*(depth + height));
+    plan p = { .length = 2*REACH/kappa, .speed = speed, .group = speed };
+    p.tank = chosen(c, "length") > 0 ? chosen(c, "length") : round_up(chosen(c, "maker-at") + p.length);
+    p.until = chosen(c, "until");
+    if (!(p.until > 0)) p.until = round_up((p.length/2 + 2*(p.tank - chosen(c, "maker-at")))/speed);
+    return p;
+}
+
+static plan make_plan(const family_choice *c)
+{
+    return chosen(c, "period") > 0 ? plan_regular(c) : plan_solitary(c);
+}
+
+const char *object_wave(const family_choice *c)
+{
+    const double depth = chosen(c, "depth");
+    if (depth > chosen(c, "height")) return "the water is higher than the tank";
+    if (chosen(c, "wave-height") > 0.78*depth)
+        return "--wave-height is more than 0.78 of --depth: such waves break";
+    if (!(chosen(c, "period") > 0) && (is_given(c, "ramp") || is_given(c, "beach")))
+        return "a solitary wave, --period 0, has neither --ramp nor --beach";
+    const plan p = make_plan(c);
+    if (chosen(c, "maker-at") >= p.tank) return "the piston stands beyond the tank";
+    return chosen(c, "maker-at") + p.beach >= p.tank
+         ? "piston and beach fill the tank: give more --length, less --beach, or no --length" : NULL;
+}
+
+static void put_piston(const family_choice *c, FILE *out, const plan *p, const double size[3])
+{
+    const double at = chosen(c, "maker-at"), height = chosen(c, "wave-height"), depth = chosen(c, "depth");
+    const double back[3] = { at - 4*chosen(c, "spacing"), 0, 0 }, face[3] = { at, size[1], size[2] };
+    const int second = height*p->length*p->length <= MADSEN*depth*depth*depth;
+    fputs("  \"bodies\": [\n    { \"name\": \"piston\", \"box\": { ", out);
+    put_corners(c, out, back, face);
+    fprintf(out, " },\n      \"motion\": { \"piston\": {\n"
+            "        \"depth\": %.10g,                  // m, of the still water\n", depth);
+    if (chosen(c, "period") > 0)
+        fprintf(out, "        \"ramp\": %.10g,                   // s, in which its stroke grows from 0\n"
+                "        // height: m from trough to crest; period: s; %s (Madsen 1971)\n"
+                "        \"regular\": { \"height\": %.10g, \"period\": %.10g, \"order\": %d }\n", p->ramp,
+                second ? "order 2: no free waves of half the period" : "too long and high for order 2",
+                height, chosen(c, "period"), second ? 2 : 1);
+    else
+        fprintf(out, "        \"solitary\": { \"height\": %.10g } // m above the still water\n", height);
+    fputs("      } } }\n  ],\n", out);
+}
+
+static void put_beach(const family_choice *c, FILE *out, const plan *p, const double size[3])
+{
+    const double low[3] = { p->tank - p->beach, 0, 0 };
+    if (!(p->beach > 0)) return;
+    fprintf(out, "  // The beach: velocities of the water decay at a rate that grows along the box to\n"
+            "  // %.10g 1/s at its end, 10 over the period.\n  \"damping_zones\": [ { \"box\": { ",
+            tidy(10/chosen(c, "period")));
+    put_corners(c, out, low, size);
+    fprintf(out, " }, \"rate\": %.10g } ],\n", tidy(10/chosen(c, "period")));
+}
+
+/* G1 to G3 of regular waves stand 1/10 and 1/4 of their length apart, which tells waves that come back
+   (Mansard and Funke 1980). */
+static void put_gauges(const family_choice *c, FILE *out, const plan *p, const double size[3])
+{
+    static const double apart[] = { 0, 0.1, 0.25 };
+    const double at = chosen(c, "maker-at"), room = p->tank - p->beach - at;
+    const int regular = chosen(c, "period") > 0;
+    fprintf(out, "  // Sensors of the level, m above the floor, in probes.csv%s\n  \"probes\": [",
+            regular ? ". G2 and G3 stand 1/10 and 1/4\n  // of a wave length behind G1: such a row tells "
+            "waves that come back (Mansard and Funke 1980)." : "; wall: pressure, Pa.");
+    for (int k = 0; k < 3; k++) {
+        const double x = regular ? at + room/2 + apart[k]*fmin(p->length, room) : at + (k + 1)*room/4;
+        char name[16];
+        snprintf(name, sizeof name, "G%d", k + 1);
+        put_probe(c, out, k == 0, name, "level", tidy(x), size[1]/2, 0);
+    }
+    if (p->beach > 0) put_probe(c, out, 0, "end", "level", size[0], size[1]/2, 0);
+    else put_probe(c, out, 0, "wall", "point", size[0], size[1]/2, chosen(c, "depth")/2);
+    fputs("\n  ],\n", out);
+}
+
+void write_wave(const family_choice *c, FILE *out)
+{
+    const plan p = make_plan(c);
+    const double size[3] = { p.tank, chosen(c, "width"), chosen(c, "height") };
+    const double low[3] = { chosen(c, "maker-at"), 0, 0 }, high[3] = { size[0], size[1], chosen(c, "depth") };
+    const int regular = chosen(c, "period") > 0;
+    const double interval = regular ? chosen(c, "period")/10 : p.until/100;
+    char title[256];
+    if (regular)
+        snprintf(title, sizeof title, "a piston makes regular waves, which %s\n// The waves are %.4g m long "
+                 "and travel at %.4g m/s, their energy at %.4g m/s (linear theory)",
+                 p.beach > 0 ? "end on a beach" : "a wall sends back", p.length, p.speed, p.group);
+    else
+        snprintf(title, sizeof title, "a piston makes a solitary wave, which a wall sends back\n"
+                 "// The wave is %.4g m long and travels at %.4g m/s (Goring 1978)", p.length, p.speed);
+    put_head(c, out, size, title, 0);
+    fprintf(out, "  \"end_time\": %.10g,", p.until);
+    if (regular) fprintf(out, "                   // s: %.4g periods", p.until/chosen(c, "period"));
+    fputc('\n', out);
+    put_water(c, out, low, high);
+    put_piston(c, out, &p, size);
+    put_beach(c, out, &p, size);
+    put_gauges(c, out, &p, size);
+    fprintf(out, "  \"output\": { \"interval\": %.10g }       // s between pictures and files of "
+            "particles\n}\n", interval);
+}
