@@ -182,6 +182,15 @@ static int64_t find_gap(const char *folder, const char *view, int64_t k)
     return k;
 }
 
+static int draw_into(source *s, const char *dir, const char *view, const char *folder, int64_t k)
+{
+    char *path = frame_path(folder, view, k);
+    int code = path ? draw_output(s, dir, k) : complain("out of memory");
+    if (code == 0) code = write_drawing(s, path);
+    free(path);
+    return code;
+}
+
 /* Those between others that are there, too. */
 static int draw_gaps(source *s, const char *dir, const char *view, const char *folder)
 {
@@ -191,12 +200,25 @@ static int draw_gaps(source *s, const char *dir, const char *view, const char *f
     for (int64_t k = 0; (k = find_gap(folder, view, k)) < count; k++) missing++;
     if (missing > 0) fprintf(stderr, "tobiuo: note: draws %lld picture%s into %s/frames\n", missing,
                              missing > 1 ? "s" : "", folder);
-    for (int64_t k = 0; code == 0 && (k = find_gap(folder, view, k)) < count; k++) {
-        char *path = frame_path(folder, view, k);
-        code = path ? draw_output(s, dir, k) : complain("out of memory");
-        if (code == 0) code = write_drawing(s, path);
-        free(path);
-    }
+    for (int64_t k = 0; code == 0 && (k = find_gap(folder, view, k)) < count; k++)
+        code = draw_into(s, dir, view, folder, k);
+    return code;
+}
+
+int draw_again(const char *dir, const char *view)
+{
+    const overrides none = { 0 };
+    source s = { 0 };
+    int code = open_source(&s, dir, view, &none);
+    const int64_t count = code == 0 && s.view->foam ? tobi_results_count(s.results) : 0;
+    long long there = 0;
+    for (int64_t k = 0; k < count; k++) there += is_picture(dir, view, k);
+    if (there > 0)
+        fprintf(stderr, "tobiuo: note: draws %lld picture%s in %s/frames anew\n", there, there > 1 ? "s" : "",
+                dir);
+    for (int64_t k = 0; code == 0 && k < count; k++)
+        if (is_picture(dir, view, k)) code = draw_into(&s, dir, view, dir, k);
+    free_source(&s);
     return code;
 }
 

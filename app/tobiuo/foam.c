@@ -12,7 +12,7 @@ typedef struct foam_options {
     const char *dir;
     double amount, lifetime;
     int64_t most;
-    int threads;
+    int threads, quiet;
 } foam_options;
 
 enum { KEY_AMOUNT = 256, KEY_LIFETIME, KEY_MOST, KEY_THREADS };
@@ -161,7 +161,7 @@ static double find_spacing(const tobi_looks *looks)
     return 0;
 }
 
-static int make_foam(const foam_options *o, const tobi_looks *looks, tobi_foam **foam)
+static int create_foam(const foam_options *o, const tobi_looks *looks, tobi_foam **foam)
 {
     tobi_error err = { 0 };
     tobi_foam_def d = tobi_default_foam();
@@ -221,6 +221,15 @@ static int write_files(const foam_options *o, const tobi_results *results, const
     return code;
 }
 
+/* The pictures that the run has drawn lack it. */
+static int draw_pictures(const char *dir, const tobi_scene *scene)
+{
+    const tobi_output_def *output = tobi_scene_output_def(scene);
+    int code = draw_again(dir, NULL);
+    for (int k = 0; code == 0 && k < output->view_count; k++) code = draw_again(dir, output->views[k].name);
+    return code;
+}
+
 static int make(const foam_options *o)
 {
     const overrides none = { 0 };
@@ -232,13 +241,13 @@ static int make(const foam_options *o)
     totals t = { 0 };
     const double begun = wall_clock();
     int code = load_looks(o->dir, &none, &scene, &looks);
-    if (code == 0) code = make_foam(o, &looks, &foam);
+    if (code == 0) code = create_foam(o, &looks, &foam);
     if (code == 0 && tobi_results_open(o->dir, &results, &err) != TOBI_OK) code = complain("%s", err.text);
     if (code == 0 && tobi_results_count(results) < 2)
         code = complain("%s has one output only; foam is made between two", o->dir);
     if (code == 0) code = write_files(o, results, &looks, foam, &t);
     const double seconds = wall_clock() - begun;
-    if (code == 0)
+    if (code == 0 && !o->quiet)
         printf("foam: %s/foam, %lld files, up to %.3g particles at a time, %.3g million particles of water "
                "in %.3g s\n", o->dir, (long long)t.files, (double)t.most, 1e-6*t.particles, seconds);
     if (code == 0 && t.left_out > 0)
@@ -246,14 +255,45 @@ static int make(const foam_options *o)
                 "--amount makes fewer\n", t.since, t.left_out);
     tobi_foam_free(foam);
     tobi_results_free(results);
+    if (code == 0) code = draw_pictures(o->dir, scene);
     tobi_looks_free(&looks);
     tobi_scene_free(scene);
     return code;
 }
 
+int make_foam(const char *dir, int quiet)
+{
+    const foam_options o = { .dir = dir, .amount = 1, .quiet = quiet };
+    return make(&o);
+}
+
+/* 1: one of the names between commas. */
+static int is_listed(const char *names, const char *name)
+{
+    const size_t length = strlen(name);
+    for (const char *at = names; *at; at += strcspn(at, ","), at += *at == ',') {
+        at += strspn(at, " ");
+        if (strncmp(at, name, length) == 0 && (!at[length] || strchr(", ", at[length]))) return 1;
+    }
+    return 0;
+}
+
+const char *foam_objection(const tobi_scene *scene, const tobi_world *world)
+{
+    const char *fields = tobi_scene_output_def(scene)->fields;
+    tobi_looks looks = { 0 };
+    tobi_error err = { 0 };
+    if (fields && !is_listed(fields, "velocity") && !is_listed(fields, "usual"))
+        return "needs the field velocity; add it to output.fields";
+    const int liquid = tobi_world_looks(world, &looks, &err) == TOBI_OK ? find_spacing(&looks) > 0 : 1;
+    tobi_looks_free(&looks);
+    return liquid ? NULL : "a run without a liquid makes none";
+}
+
 const struct argp foam_argp = { .options = options, .parser = parse, .args_doc = "DIR",
     .doc = "Make spray, foam and bubbles of the liquids of the run in DIR, for its pictures: points in "
-           "DIR/foam, for each output. The water does not feel them." };
+           "DIR/foam, for each output. The water does not feel them. Pictures that the run has drawn are "
+           "drawn anew with it." };
 
 int tobiuo_foam(int argc, char **argv)
 {

@@ -10,10 +10,10 @@ typedef struct run_options {
     const char *scene, *out, *movie, *surface, *keys;
     double slow;                /* 0: not given */
     overrides set;
-    int force, quiet, window;
+    int force, quiet, window, foam;
 } run_options;
 
-enum { KEY_FORCE = KEY_OWN, KEY_FRAMES, KEY_MOVIE, KEY_SURFACE, KEY_SLOW, KEY_WINDOW, KEY_KEYS };
+enum { KEY_FORCE = KEY_OWN, KEY_FRAMES, KEY_MOVIE, KEY_SURFACE, KEY_SLOW, KEY_FOAM, KEY_WINDOW, KEY_KEYS };
 
 static const struct argp_option options[] = {
     { "out", 'o', "DIR", 0, "where the results go (out/<scene>)", 0 },
@@ -25,6 +25,8 @@ static const struct argp_option options[] = {
         "of each view", 0 },
     { "surface", KEY_SURFACE, "FORMAT", 0, "and the surfaces of fluids and solids at the end, as \"tobiuo "
         "surface\" makes them: vtp, obj, ply, stl or glb", 0 },
+    { "foam", KEY_FOAM, NULL, 0, "and spray, foam and bubbles at the end, as \"tobiuo foam\" makes them, for "
+        "pictures and movie", 0 },
     { "slow", KEY_SLOW, "N", 0, "with --movie, --surface=glb: N times slower than the scene is (1)", 0 },
     { "window", KEY_WINDOW, NULL, 0, "watch the run in a window; the key h lists its keys", 0 },
     { "keys", KEY_KEYS, "LETTERS", 0, "keys typed into the window at the start", 0 },
@@ -53,6 +55,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
         if (!o->surface) argp_error(state, "--surface: '%s' is none of vtp, obj, ply, stl, glb", value);
         break;
     case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;
+    case KEY_FOAM: o->foam = 1; break;
     case KEY_FORCE: o->force = 1; break;
     case KEY_WINDOW: o->window = 1; break;
     case KEY_KEYS: o->keys = value; break;
@@ -149,12 +152,18 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     int code = dir ? check_size(scene, world, o, dir, &size) : complain("out of memory");
     if (code == 0 && o->surface && tobi_scene_world_def(scene)->dimension != 3)
         code = complain("--surface: a run in 2-D has no surface");
+    if (code == 0 && o->foam && foam_objection(scene, world))
+        code = complain("--foam: %s", foam_objection(scene, world));
     if (code == 0 && o->movie) code = handle_movies(scene, o, dir, PREPARE);
     const int no_movie = code == 0 && o->movie ? check_encoder() : 0;
     char quoted[SHELL_WORD];
     if (no_movie)
         complain("the run goes on and keeps its pictures; later: tobiuo movie %s", shell_word(dir, quoted));
     if (code == 0) code = record(scene, world, o, dir, &size);
+    if ((code == 0 || code == EXIT_UNWRITTEN) && o->foam) {
+        const int made = make_foam(dir, o->quiet);
+        if (code == 0) code = made;
+    }
     if ((code == 0 || code == EXIT_UNWRITTEN) && o->movie) {      /* of the pictures that there are */
         const int made = no_movie ? no_movie : handle_movies(scene, o, dir, MAKE);
         if (code == 0) code = made;

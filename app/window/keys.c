@@ -72,8 +72,13 @@ void viewer_show(viewer *v, int64_t output)
         if (v->def.live) live_ask(v->def.live, 1);
         return;
     }
-    if (tobi_results_read(v->results, v->shown, &m, &err) == TOBI_OK) viewer_adopt(v, moment_share(&m));
-    else viewer_note(v, "%.280s", err.text);
+    if (tobi_results_read(v->results, v->shown, &m, &err) != TOBI_OK) {
+        viewer_note(v, "%.280s", err.text);
+        return;
+    }
+    if (tobi_results_read_foam(v->results, v->shown, &m, &err) != TOBI_OK)
+        viewer_note(v, "%.280s", err.text);
+    viewer_adopt(v, moment_share(&m));
 }
 
 static void scrub(viewer *v, double x)

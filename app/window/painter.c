@@ -123,7 +123,7 @@ static void paint(const tobi_looks *s, const tobi_moment *m, painting *out)
 {
     const double begun = clock_seconds();
     const look *l = &out->look;
-    const tobi_view_def view = { .width = l->width, .height = l->height, .samples = 1,
+    const tobi_view_def view = { .width = l->width, .height = l->height, .samples = 1, .foam = 1,
                                  .field = *l->field ? l->field : NULL, .min = l->low, .max = l->high };
     tobi_drawing *d = NULL;
     tobi_error err = { .text = "out of memory" };

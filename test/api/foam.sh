@@ -48,6 +48,26 @@ check "the same bits" diff -r one splash/foam
 expect 0 "there was no room for" foam splash --amount 3 --most 40
 check "what takes more is told" grep -qE "from 0\.0[0-9]* s on .* --most takes more" err.txt
 
+# The run's own pictures have it: when it is made afterwards, and by run --foam.
+cp -r splash drawn && rm -r drawn/foam drawn/foam.pvd
+expect 0 "draws 9 pictures into drawn/frames" movie drawn --out bare2.png
+check "pictures without foam" cmp bare2.png bare.png
+expect 0 "draws 9 pictures in drawn/frames anew" foam drawn --amount 3
+check "tobiuo foam draws them anew" cmp drawn/frames/frame_000008.png white.png
+views='output.views=[{"name": "side", "picture": {"foam": false}}]'
+expect 0 "draws 9 pictures in own/frames anew" run splash.json --out own --quiet --frames --foam --set "$views"
+check "a view without foam stays" test "$(grep -c anew err.txt)" = 1
+expect 0 "" picture own --out own.png
+check "run --foam draws pictures with it" cmp own/frames/frame_000008.png own.png
+expect 0 "" picture own --out own_bare.png --set output.picture.foam=false
+check "which is seen" test "$(cmp own.png own_bare.png > same.txt; echo $?)" = 1
+expect 1 "--foam: needs the field velocity; add it to output.fields" run splash.json --out never --foam \
+    --set 'output.fields=["pressure"]'
+expect 1 "--foam: a run without a liquid makes none" run splash.json --out never --foam --set fluids=[] \
+    --set method=mlsmpm --set 'solids=[{"name": "block", "density": 1000, "youngs_modulus": 1e5,
+        "fill": [{"box": {"min": [0, 0, 0], "max": [0.1, 0.1, 0.1]}}]}]'
+check "and nothing is run" test ! -e never
+
 # Still water makes none.
 expect 0 "" run splash.json --out still --quiet --set 'fluids[0].fill[1].velocity=[0,0,0]' \
     --set 'fluids[0].fill[1].box.min=[0,0,0.06]' --set 'fluids[0].fill[1].box.max=[0.3,0.2,0.1]'

@@ -91,6 +91,19 @@ END
 differ() { printf '%s\t%s\t%s\t%s\n' "$@" >> differ.txt; }
 all=-picture,-head,-colours,-line,-curves,-help,-picks
 
+# Foam that "tobiuo foam" has made is seen.
+sed 's|"bodies".*|"gravity": [0, 0, -9.81],|; /"density": 500/d; s|"max": \[0.5, 1, 0.5\] }|"max": [1, 1, 0.3] }|
+     s|} } \] } \]|} }, { "box": { "min": [0.3, 0.3, 0.4], "max": [0.7, 0.7, 0.8] }, "velocity": [0, 0, -8] } ] } ]|' \
+    drop.json > splash.json
+"$program" run splash.json --out splash --quiet > out.txt 2> err.txt
+expect 0 "" foam splash --amount 100
+for k in 1 2; do
+    timeout 60 "$program" view splash --size 800x450 --keys ">sq" > out.txt 2> err.txt
+    mv splash/window_1.png foam_$k.png
+    rm -rf splash/foam
+done
+differ picture foam_1.png foam_2.png "foam"
+
 look keys "shshsfsFs+s-sns>s<sb0sq"
 differ help,-line keys_1.png keys_2.png "h"
 differ $all keys_1.png keys_3.png "h again"
