@@ -16,6 +16,8 @@ static const char head[] =
     "\n"
     "<!-- Written by `tobiuo describe scene` from the tables that read scenes; do not edit. -->\n"
     "\n"
+    "[日本語](scene.ja.md)\n"
+    "\n"
     "A scene is one text file that says everything about a simulation: the box, the fluids or solids, the\n"
     "bodies, the output. `tobiuo check scene.json` finds every mistake at once, with line and column;\n"
     "`tobiuo run scene.json` runs it.\n"
