@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes docs/scene.ja.md: docs/scene.md with the Japanese texts of the catalogue docs/scene.ja.po.
 
 usage: translate_scene.py [--update | --check] [ROOT]
