@@ -216,11 +216,21 @@ char *movie_of_view(const char *out, const char *view);
 int make_small_movie(const char *dir, const char *out, double *slow);
 /* A movie of DIR/frames with so many pictures per second; whatever is there is replaced. */
 int encode_pictures(const char *dir, const char *out, double rate);
-/* Number of pictures in DIR/frames before the first that is missing; whether one is there; its path, NULL: no
-   memory. */
-int64_t count_pictures(const char *dir, const char *view);
+/* pictures.c: the numbers of those in DIR/frames: first to end - 1, of which count are there. */
+typedef struct pictures { int64_t first, end, count; } pictures;
+pictures find_pictures(const char *dir, const char *view);
 int is_picture(const char *dir, const char *view, int64_t number);
+/* NULL: no memory. The caller frees. */
 char *frame_path(const char *dir, const char *view, int64_t number);
+/* The one that stands for a number: itself or the last before it. */
+int64_t shown_picture(const char *dir, const char *view, const pictures *p, int64_t number);
+/* "3 to 5, 8", the missing ones between first and end. NULL: no memory. The caller frees. */
+char *list_gaps(const char *dir, const char *view, const pictures *p);
+/* Makes the folder, whose name ends in XXXXXX, with links to what is shown, numbered from 0. Returns the exit
+   code. */
+int link_pictures(const char *dir, const char *view, const pictures *p, char *folder);
+/* Those of the folder, and it. */
+void clear_pictures(const char *folder, const char *view);
 /* draw.c: draws from the results of the run in dir, with values of its scene changed, the pictures that
    folder/frames lacks. Returns the exit code. */
 int draw_missing(const char *dir, const char *view, const overrides *set, const char *folder);

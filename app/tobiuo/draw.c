@@ -126,18 +126,17 @@ static int open_source(source *s, const char *dir, const char *view, const overr
 }
 
 /* The drawing of an output; that before is gone. */
-static int draw_output(source *s, const char *dir, int64_t output)
+static tobi_status draw_output(source *s, const char *dir, int64_t output, tobi_error *err)
 {
-    tobi_error err = { 0 };
     tobi_drawing_free(s->drawing);
     s->drawing = NULL;
     tobi_moment_free(&s->moment);
-    tobi_status status = tobi_results_read(s->results, output, &s->moment, &err);
+    tobi_status status = tobi_results_read(s->results, output, &s->moment, err);
     if (status == TOBI_OK && s->view->foam)
-        status = tobi_results_read_foam(s->results, output, &s->moment, &err);
-    if (status == TOBI_OK && s->view->paths) status = tobi_tracks_read(dir, &s->moment, &err);
-    if (status == TOBI_OK) status = tobi_drawing_make(&s->looks, &s->moment, s->view, &s->drawing, &err);
-    return status == TOBI_OK ? 0 : complain("%s", err.text);
+        status = tobi_results_read_foam(s->results, output, &s->moment, err);
+    if (status == TOBI_OK && s->view->paths) status = tobi_tracks_read(dir, &s->moment, err);
+    if (status == TOBI_OK) status = tobi_drawing_make(&s->looks, &s->moment, s->view, &s->drawing, err);
+    return status;
 }
 
 static int write_drawing(const source *s, const char *out)
@@ -160,9 +159,11 @@ static void note_end(const draw_options *o, const tobi_results *results)
 static int draw(const draw_options *o, source *s)
 {
     char *path = NULL;
+    tobi_error err = { 0 };
     int code = open_source(s, o->dir, o->view, &o->set);
     if (code == 0) note_end(o, s->results);
-    if (code == 0) code = draw_output(s, o->dir, find_output(o, s->results));
+    if (code == 0 && draw_output(s, o->dir, find_output(o, s->results), &err) != TOBI_OK)
+        code = complain("%s", err.text);
     if (code != 0) return code;
     const tobi_picture *p = tobi_drawing_picture(s->drawing);
     if (asprintf(&path, "%s/picture.png", o->dir) < 0) return complain("out of memory");
@@ -182,27 +183,40 @@ static int64_t find_gap(const char *folder, const char *view, int64_t k)
     return k;
 }
 
-static int draw_into(source *s, const char *dir, const char *view, const char *folder, int64_t k)
+/* The picture of an output into folder/frames. *lost counts those that cannot be drawn, because results are
+   missing; the first is said. A picture that cannot be written ends all. */
+static int draw_into(source *s, const char *dir, const char *view, const char *folder, int64_t k,
+                     long long *lost)
 {
+    tobi_error err = { 0 };
+    if (draw_output(s, dir, k, &err) != TOBI_OK) {
+        if ((*lost)++ == 0) complain("%s", err.text);
+        return 0;
+    }
     char *path = frame_path(folder, view, k);
-    int code = path ? draw_output(s, dir, k) : complain("out of memory");
-    if (code == 0) code = write_drawing(s, path);
+    const int code = path ? write_drawing(s, path) : complain("out of memory");
     free(path);
     return code;
+}
+
+static int say_lost(long long lost)
+{
+    if (lost > 1) complain("so %lld pictures cannot be drawn", lost);
+    return lost > 0 ? EXIT_ERROR : 0;
 }
 
 /* Those between others that are there, too. */
 static int draw_gaps(source *s, const char *dir, const char *view, const char *folder)
 {
     const int64_t count = tobi_results_count(s->results);
-    long long missing = 0;
+    long long missing = 0, lost = 0;
     int code = 0;
     for (int64_t k = 0; (k = find_gap(folder, view, k)) < count; k++) missing++;
     if (missing > 0) fprintf(stderr, "tobiuo: note: draws %lld picture%s into %s/frames\n", missing,
                              missing > 1 ? "s" : "", folder);
     for (int64_t k = 0; code == 0 && (k = find_gap(folder, view, k)) < count; k++)
-        code = draw_into(s, dir, view, folder, k);
-    return code;
+        code = draw_into(s, dir, view, folder, k, &lost);
+    return code == 0 ? say_lost(lost) : code;
 }
 
 int draw_again(const char *dir, const char *view)
@@ -211,15 +225,15 @@ int draw_again(const char *dir, const char *view)
     source s = { 0 };
     int code = open_source(&s, dir, view, &none);
     const int64_t count = code == 0 && s.view->foam ? tobi_results_count(s.results) : 0;
-    long long there = 0;
+    long long there = 0, lost = 0;
     for (int64_t k = 0; k < count; k++) there += is_picture(dir, view, k);
     if (there > 0)
         fprintf(stderr, "tobiuo: note: draws %lld picture%s in %s/frames anew\n", there, there > 1 ? "s" : "",
                 dir);
     for (int64_t k = 0; code == 0 && k < count; k++)
-        if (is_picture(dir, view, k)) code = draw_into(&s, dir, view, dir, k);
+        if (is_picture(dir, view, k)) code = draw_into(&s, dir, view, dir, k, &lost);
     free_source(&s);
-    return code;
+    return code == 0 ? say_lost(lost) : code;
 }
 
 int draw_missing(const char *dir, const char *view, const overrides *set, const char *folder)

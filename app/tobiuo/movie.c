@@ -88,28 +88,6 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return 0;
 }
 
-char *frame_path(const char *dir, const char *view, int64_t number)
-{
-    char *path = NULL;
-    return asprintf(&path, "%s/frames/%s_%06lld.png", dir, view ? view : "frame", (long long)number) < 0
-        ? NULL : path;
-}
-
-int is_picture(const char *dir, const char *view, int64_t number)
-{
-    char *path = frame_path(dir, view, number);
-    const int there = path && access(path, R_OK) == 0;
-    free(path);
-    return there;
-}
-
-int64_t count_pictures(const char *dir, const char *view)
-{
-    int64_t k = 0;
-    while (is_picture(dir, view, k)) k++;
-    return k;
-}
-
 static int compare_numbers(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -177,7 +155,7 @@ static char *name_pictures(const char *dir, const char *view)
 
 static int has_pictures_with_alpha(const char *dir, const char *view)
 {
-    char *path = frame_path(dir, view, 0);
+    char *path = frame_path(dir, view, find_pictures(dir, view).first);
     const int alpha = path && is_transparent(path);
     free(path);
     return alpha;
@@ -193,17 +171,6 @@ static int add_options(const struct kind *kind, int alpha, char **argument, int 
         else argument[n - 1] = *filter;
     }
     return n;
-}
-
-char *find_damaged(const char *dir, const char *view)
-{
-    const int64_t count = count_pictures(dir, view);
-    for (int64_t k = 0; k < count; k++) {
-        char *path = frame_path(dir, view, k);
-        if (path && is_damaged(path)) return path;
-        free(path);
-    }
-    return NULL;
 }
 
 /* What ffmpeg did not make, and which picture it may be because of. */
@@ -247,13 +214,30 @@ static int encode(const char *dir, const char *view, const char *part, const str
     return code;
 }
 
+/* ffmpeg wants numbers from 0 on without gaps. */
+static int encode_row(const char *dir, const char *view, const char *part, const struct kind *kind,
+                      double rate)
+{
+    const pictures p = find_pictures(dir, view);
+    char *folder = NULL;
+    if (p.first == 0 && p.count == p.end) return encode(dir, view, part, kind, rate);
+    if (asprintf(&folder, "%s.XXXXXX", part) < 0) return complain("out of memory");
+    int code = link_pictures(dir, view, &p, folder);
+    if (code == 0) {
+        code = encode(folder, view, part, kind, rate);
+        clear_pictures(folder, view);
+    }
+    free(folder);
+    return code;
+}
+
 /* A movie is there whole or not at all. */
 static int write_movie(const char *dir, const char *view, const char *out, const struct kind *kind,
                        double rate)
 {
     char *part = NULL;
     if (asprintf(&part, "%s.part", out) < 0) return complain("out of memory");
-    int code = encode(dir, view, part, kind, rate);
+    int code = encode_row(dir, view, part, kind, rate);
     if (code == 0 && rename(part, out) != 0) code = complain("cannot write %s: %s", out, strerror(errno));
     if (code != 0) unlink(part);
     free(part);
@@ -290,18 +274,31 @@ static double check_pictures(const char *dir, int64_t count, int64_t *outputs)
     return 0;
 }
 
+static void say_gaps(const char *dir, const char *view, const char *out, const pictures *p, int64_t outputs)
+{
+    char *gaps = p->count < p->end - p->first ? list_gaps(dir, view, p) : NULL;
+    if (p->first > 0)
+        complain("%s begins with output %lld; the pictures before it are missing", out, (long long)p->first);
+    if (gaps)
+        complain("the pictures of these outputs are missing: %s; %s shows the picture before in their place",
+                 gaps, out);
+    if (outputs > p->end)
+        complain("%s ends before output %lld of %lld, whose picture is missing", out, (long long)p->end,
+                 (long long)outputs - 1);
+    free(gaps);
+}
+
 /* Of the run in dir, whose pictures are in at/frames. */
 static int make_movie_of(const char *dir, const char *at, const char *view, const char *out, double slow)
 {
-    const int64_t count = count_pictures(at, view);
+    const pictures p = find_pictures(at, view);
+    const int64_t count = p.end - p.first;
     int64_t outputs;
-    const double interval = check_pictures(dir, count, &outputs);
+    const double interval = check_pictures(dir, p.count, &outputs);
     if (!(interval > 0)) return EXIT_ERROR;
     const int code = write_movie(at, view, out, find_kind(out), 1/(interval*slow));
-    const int whole = outputs <= count;
-    if (code == 0 && !whole)
-        complain("%s ends before output %lld of %lld, whose picture is missing", out, (long long)count,
-                 (long long)outputs - 1);
+    const int whole = outputs <= p.end && p.count == p.end;
+    if (code == 0 && !whole) say_gaps(at, view, out, &p, outputs);
     if (code == 0)
         printf("movie: %s, %lld pictures, %.4g s\n", out, (long long)count, (double)count*interval*slow);
     return code == 0 && !whole ? EXIT_UNWRITTEN : code;
@@ -316,9 +313,10 @@ int make_movie(const char *dir, const char *view, const char *out, double slow, 
 int make_small_movie(const char *dir, const char *out, double *slow)
 {
     static const double SHORTEST = 4, STEPS[] = { 1, 2, 5, 10 };       /* s of a movie */
-    const int64_t count = count_pictures(dir, NULL);
+    const pictures p = find_pictures(dir, NULL);
+    const int64_t count = p.end - p.first;
     int64_t outputs;
-    const double interval = check_pictures(dir, count, &outputs);
+    const double interval = check_pictures(dir, p.count, &outputs);
     if (!(interval > 0)) return EXIT_ERROR;
     const double wanted = fmax(1, SHORTEST/((double)count*interval)), ten = pow(10, floor(log10(wanted)));
     for (int k = 0; k < 4; k++) {
@@ -343,7 +341,7 @@ static int is_run(const movie_options *o)
     char *history = NULL;
     const int there = asprintf(&history, "%s/history.csv", o->dir) >= 0 && access(history, F_OK) == 0;
     free(history);
-    return there || is_picture(o->dir, o->view, 0);
+    return there || find_pictures(o->dir, o->view).count > 0;
 }
 
 /* With what is there, if the rest cannot be drawn: somebody may have kept the pictures alone. */
@@ -352,23 +350,9 @@ static int complete_and_make(const movie_options *o, const char *out)
     int64_t outputs;
     int code = 0;
     find_interval(o->dir, &outputs);
-    if (count_pictures(o->dir, o->view) < outputs) code = draw_missing(o->dir, o->view, &o->set, o->dir);
-    return code == 0 || count_pictures(o->dir, o->view) > 0 ? make(o, o->dir, out) : code;
-}
-
-static void remove_pictures(const char *folder, const char *view)
-{
-    char *frames = NULL;
-    for (int64_t k = count_pictures(folder, view) - 1; k >= 0; k--) {
-        char *path = frame_path(folder, view, k);
-        if (path) unlink(path);
-        free(path);
-    }
-    if (asprintf(&frames, "%s/frames", folder) >= 0) {
-        rmdir(frames);
-        free(frames);
-    }
-    rmdir(folder);
+    const pictures p = find_pictures(o->dir, o->view);
+    if (p.count < outputs || p.count < p.end) code = draw_missing(o->dir, o->view, &o->set, o->dir);
+    return code == 0 || find_pictures(o->dir, o->view).count > 0 ? make(o, o->dir, out) : code;
 }
 
 /* In a folder that is removed: the pictures of the run stay as its scene has them. */
@@ -379,8 +363,8 @@ static int redraw_and_make(const movie_options *o, const char *out)
     int code = mkdtemp(folder) ? 0 : complain("cannot make a folder in %s: %s", o->dir, strerror(errno));
     if (code == 0) {
         code = draw_missing(o->dir, o->view, &o->set, folder);
-        if (code == 0) code = make(o, folder, out);
-        remove_pictures(folder, o->view);
+        if (code == 0 || find_pictures(folder, o->view).count > 0) code = make(o, folder, out);
+        clear_pictures(folder, o->view);
     }
     free(folder);
     return code;

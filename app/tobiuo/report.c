@@ -241,10 +241,12 @@ static void embed(const report *r, const char *before, const char *type, const c
 /* Pictures that were deleted or damaged, or that an older end of the run left out. */
 static void write_gap(const report *r)
 {
-    const int64_t count = count_pictures(r->dir, NULL);
-    if (count < (int64_t)r->history.rows)
-        fprintf(r->file, "<p>The picture of output %lld is missing, and nothing from there on is shown. "
-                "<code>tobiuo movie</code> draws it.</p>\n", (long long)count);
+    const pictures p = find_pictures(r->dir, NULL);
+    const int64_t missing = (int64_t)r->history.rows - p.count;
+    if (missing > 0)
+        fprintf(r->file, "<p>Of the pictures %lld %s missing; the one before is shown in %s place. "
+                "<code>tobiuo movie</code> draws what is missing.</p>\n", (long long)missing,
+                missing > 1 ? "are" : "is", missing > 1 ? "their" : "its");
 }
 
 static void write_no_movie(const report *r)
@@ -264,14 +266,14 @@ static void write_pictures(const report *r)
     char *sheet = join(r->dir, "report_sheet.png"), *movie = join(r->dir, "report_movie.mp4");
     double slow = 1;
     fputs("<h2>Pictures</h2>\n", r->file);
-    if (count_pictures(r->dir, NULL) == 0) {
+    if (find_pictures(r->dir, NULL).count == 0) {
         fputs("<p>There are none: the scene was run without <code>--frames</code>. "
               "<code>tobiuo movie</code> draws them.</p>\n", r->file);
     } else {
         write_gap(r);
         if (make_sheet(r->dir, NULL, sheet) == 0)
             embed(r, "<img alt=\"moments of the run\" src=\"", "image/png", sheet, "\">\n");
-        if (count_pictures(r->dir, NULL) > 1) {
+        if (find_pictures(r->dir, NULL).count > 1) {
             if (make_small_movie(r->dir, movie, &slow) == 0) {
                 fprintf(r->file, "<h3>Movie</h3><p>%s%g%s</p>\n", slow > 1 ? "" : "As fast as the scene, x",
                         slow, slow > 1 ? " times slower than the scene." : ".");

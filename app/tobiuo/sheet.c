@@ -11,7 +11,7 @@
 enum { COLUMNS = 4, MOMENTS = 12, CELL = 320, GAP = 4 };       /* pixels */
 
 typedef struct sheet {
-    int64_t count;                      /* pictures of the run    */
+    pictures row;                       /* of the run             */
     int cells, columns, cell_height;
     png_image image;
     png_bytep pixels;                   /* owned                  */
@@ -67,7 +67,7 @@ static void shrink(const sheet *s, const png_image *from, png_const_bytep pixels
 /* The first picture says how high a cell is. */
 static int lay_out(sheet *s, const png_image *first)
 {
-    s->cells = s->count < MOMENTS ? (int)s->count : MOMENTS;
+    s->cells = s->row.count < MOMENTS ? (int)s->row.count : MOMENTS;
     s->columns = s->cells < COLUMNS ? s->cells : COLUMNS;
     s->cell_height = (int)(((double)first->height*CELL)/first->width + 0.5);
     if (s->cell_height < 1) s->cell_height = 1;
@@ -83,7 +83,8 @@ static int lay_out(sheet *s, const png_image *first)
 
 static int draw_cell(sheet *s, const char *dir, const char *view, int cell)
 {
-    const int64_t number = s->cells > 1 ? (s->count - 1)*cell/(s->cells - 1) : 0;
+    const int64_t ways = s->cells > 1 ? (s->row.end - s->row.first - 1)*cell/(s->cells - 1) : 0;
+    const int64_t number = shown_picture(dir, view, &s->row, s->row.first + ways);
     png_image image;
     png_bytep pixels;
     char *path = frame_path(dir, view, number);
@@ -111,10 +112,10 @@ int is_transparent(const char *path)
 
 int make_sheet(const char *dir, const char *view, const char *out)
 {
-    sheet s = { .count = count_pictures(dir, view), .cells = 1, .columns = 1 };
+    sheet s = { .row = find_pictures(dir, view), .cells = 1, .columns = 1 };
     char *part = NULL;
     int code = 0;
-    if (s.count == 0) return complain("%s has no pictures", dir);
+    if (s.row.count == 0) return complain("%s has no pictures", dir);
     for (int k = 0; code == 0 && k < s.cells; k++) code = draw_cell(&s, dir, view, k);
     if (code == 0 && asprintf(&part, "%s.part", out) < 0) code = complain("out of memory");
     errno = 0;

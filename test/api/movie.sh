@@ -84,6 +84,30 @@ expect 1 "has one output only" movie short
 expect 0 "" movie "100%d run"
 cp -r "100%d run" hurt && rm hurt/movie.mp4 hurt/fluid/fluid_000010.vtu hurt/frames/frame_000010.png
 expect 3 "hurt/movie.mp4 ends before output 10 of 10, whose picture is missing" movie hurt
+# A gap: the picture before stands there, so that the movie keeps its time.
+cp -r "100%d run" gaps && rm gaps/movie.mp4 gaps/fluid/fluid_00000[045].vtu gaps/fluid/fluid_000008.vtu
+rm gaps/frames/frame_00000[045].png gaps/frames/frame_000008.png
+expect 3 "gaps/movie.mp4 begins with output 1; the pictures before it are missing" movie gaps
+said="the pictures of these outputs are missing: 4 to 5, 8; gaps/movie.mp4 shows the picture before in their place"
+check "a gap is told" grep -qF "$said" err.txt
+check "what is not there is told once" grep -q "so 4 pictures cannot be drawn" err.txt
+check "a movie of gaps keeps its time" is gaps/movie.mp4 10 0.2
+check "and leaves no links" test -z "$(ls -d gaps/movie.mp4.* 2> /dev/null)"
+# alike MOVIE NUMBER PICTURE: its frame of that number shows the picture, up to what H.264 loses
+alike() {
+    ffmpeg -loglevel error -i "$1" -vf "select=eq(n\,$2),scale=64:36" -frames:v 1 -f rawvideo -pix_fmt gray a.raw -y
+    ffmpeg -loglevel error -i "$3" -vf scale=64:36 -frames:v 1 -f rawvideo -pix_fmt gray b.raw -y
+    $python -c 'import sys; a, b = (open(f, "rb").read() for f in ("a.raw", "b.raw"))
+sys.exit(not len(a) == len(b) > 0 or max(abs(x - y) for x, y in zip(a, b)) > 12)'
+}
+check "the picture before the gap is shown in it" alike gaps/movie.mp4 4 gaps/frames/frame_000003.png
+check "the one behind it is not" test "$(alike gaps/movie.mp4 4 gaps/frames/frame_000006.png; echo $?)" = 1
+check "and follows" alike gaps/movie.mp4 5 gaps/frames/frame_000006.png
+expect 3 "these outputs are missing: 4 to 5, 8; other.mp4 shows" movie gaps --out other.mp4 --set output.picture.field=pressure
+check "drawn anew with gaps, too" is other.mp4 10 0.2
+check "and leaves nothing" test -z "$(ls -d gaps/movie.?????? 2> /dev/null)"
+expect 0 "so 4 pictures cannot be drawn" movie gaps --out gaps.png
+check "a sheet of what there is" test -s gaps.png
 truncate -s 1000 hurt/frames/frame_000003.png
 expect 1 "frame_000003.png is damaged; delete it, and the movie draws it anew" movie hurt --force
 cp hurt/frames/frame_000004.png hurt/frames/frame_000003.png

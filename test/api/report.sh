@@ -102,7 +102,7 @@ check "a summary that is damaged: exit code 0 (was $got)" test $got = 0
 check "is named" grep -q "hurt/summary.json is damaged, and the report does without it: line" err.txt
 check "on the page, too" says hurt/report.html "Damaged, and left out: summary.json."
 check "which does not say that the run has not ended" test "$(grep -c 'has not ended' hurt/report.html)" = 0
-check "a picture in the middle that is gone" says hurt/report.html "The picture of output 3 is missing, and nothing"
+check "a picture in the middle that is gone" says hurt/report.html "Of the pictures 1 is missing; the one before is shown in its place"
 check "and the page says so" says bare.html "There are none: they need gnuplot."
 check "of the movie too" says bare.html "There is no movie: it needs ffmpeg."
 check "no remains" test -z "$(find . -name '*.part' -o -name 'report_*')"
