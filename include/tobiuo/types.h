@@ -565,6 +565,8 @@ typedef struct tobi_body_energy {
     double kinetic, potential;    /* J: of centre of mass and turn; in gravity against domain_min     */
     double power;                 /* W, by fluids and solids; of a body with a motion, it takes -power */
     double contact_power;         /* W, by bodies and sides that touch it                             */
+    double motion_power;          /* W, that its motion gives it: -power; of a swimmer by its change of
+                                     shape; 0 of others                                               */
 } tobi_body_energy;
 
 /* Energy of a world besides that of its fluids and solids. */

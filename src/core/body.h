@@ -27,7 +27,10 @@ typedef struct tobi_edge_foot {
 } tobi_edge_foot;
 
 /* What one system presses a body with, mean over the world's step: N, and N m about the centre. */
-typedef struct tobi_body_load { double pressure[6], friction[6], edge[3]; } tobi_body_load;
+typedef struct tobi_body_load {
+    double pressure[6], friction[6], edge[3];
+    double shape;                    /* W, of the velocities by which the body changes its shape */
+} tobi_body_load;
 enum { TOBI_SYSTEM_LIMIT = 2 };
 
 /* What a point of a body's surface knows of the water: none; particles see it; it faces a side or another
@@ -112,8 +115,11 @@ typedef struct tobi_body {
     double (*rest_vertex)[3];        /* vertices about the centre of mass, in rest axes        */
     tobi_bvh *rest_bvh;              /* of rest_vertex; NULL before tobi_body_build_rest       */
     tobi_body_load load[TOBI_SYSTEM_LIMIT];      /* of this step: each system adds to its own  */
-    double start[6];                 /* m/s, rad/s: of a free body, when the step began        */
-    double power[2];                 /* W: that particles, and contact, give it; tobi_body_find_power */
+    double start[9];                 /* m/s, rad/s, kg m2/s: velocities and angular momentum, when the step
+                                        began                                                  */
+    double touch_power;              /* W, of contact, as tobi_body_load.shape                 */
+    double power[3];                 /* W: that particles, contact, and its motion give it;
+                                        tobi_body_find_power                                   */
     tobi_body_info info;             /* its forces: tobi_body_sum_loads                        */
 } tobi_body;
 
@@ -197,10 +203,18 @@ void tobi_body_update_surface(tobi_body *b);
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err);
 /* Before a step: no system presses; keeps the velocities as `start`. */
 void tobi_body_clear_loads(tobi_body *b);
+/* m/s2: of a quadrature point of a body with a motion along its normal, over the last step; of a swimmer by
+   its flow alone. */
+double tobi_body_point_acceleration(const tobi_body *b, int64_t point, double dt);
+/* m/s: of a quadrature point, and of a place on a triangle of the mesh (m from the lower corner of the box),
+   what a change of shape adds in this step to the rigid motion by `start`; of a body that deforms. */
+void tobi_body_point_flow(const tobi_body *b, int64_t point, double flow[3]);
+void tobi_body_place_flow(const tobi_body *b, int32_t triangle, const double barycentric[3],
+                          const double place[3], double flow[3]);
 /* After a step: its mean velocities in it, m/s, rad/s. An impulse J gives a free body the work J of them. */
 void tobi_body_mean_velocity(const tobi_body *b, double u[6]);
-/* After that: W, mean over the step; 0 of a body that changes its shape. */
-void tobi_body_find_power(tobi_body *b);
+/* After that: W, mean over the step of dt, s. */
+void tobi_body_find_power(tobi_body *b, double dt);
 /* After a step: the sums of the loads as the forces of `info`. */
 void tobi_body_sum_loads(tobi_body *b);
 /* Copies pose and velocities of a free body from `rigid` into `info`. */

@@ -9,6 +9,41 @@ void tobi_body_clear_loads(tobi_body *b)
     memset(b->load, 0, sizeof b->load);
     memcpy(b->start, b->rigid.velocity, sizeof b->rigid.velocity);
     memcpy(b->start + 3, b->rigid.angular_velocity, sizeof b->rigid.angular_velocity);
+    memcpy(b->start + 6, b->rigid.momentum, sizeof b->rigid.momentum);
+}
+
+/* Of a swimmer the motion has none of the rigid velocities; of a driven body they are in it. */
+static void leave_flow(const tobi_body *b, const double place[3], double velocity[3])
+{
+    double rigid[3];
+    if (b->swimmer) return;
+    tobi_body_carry(b, place, b->start, rigid);
+    vec3_sub(velocity, velocity, rigid);
+}
+
+double tobi_body_point_acceleration(const tobi_body *b, int64_t point, double dt)
+{
+    const double (*now)[3] = (const double (*)[3])(b->swimmer ? b->swimmer->point_flow : b->point_velocity);
+    double change[3];
+    if (!b->motion) return 0;
+    vec3_sub(change, now[point], b->point_before[point]);
+    return vec3_dot(b->normal[point], change)/dt;
+}
+
+void tobi_body_point_flow(const tobi_body *b, int64_t point, double flow[3])
+{
+    memcpy(flow, b->swimmer ? b->swimmer->point_flow[point] : b->point_velocity[point], 3*sizeof *flow);
+    leave_flow(b, b->point[point], flow);
+}
+
+void tobi_body_place_flow(const tobi_body *b, int32_t triangle, const double barycentric[3],
+                          const double place[3], double flow[3])
+{
+    const double (*of)[3] = (const double (*)[3])(b->swimmer ? b->swimmer->flow : b->vertex_velocity);
+    memset(flow, 0, 3*sizeof *flow);
+    for (int c = 0; c < 3; c++)
+        vec3_add_scaled(flow, flow, barycentric[c], of[b->mesh.triangles[triangle][c]]);
+    leave_flow(b, place, flow);
 }
 
 void tobi_body_mean_velocity(const tobi_body *b, double u[6])
@@ -20,15 +55,26 @@ void tobi_body_mean_velocity(const tobi_body *b, double u[6])
     }
 }
 
-void tobi_body_find_power(tobi_body *b)
+/* What a swimmer gives: to what it touches, and to its own turn, as it changes its inertia (R.29). */
+static double find_swimming(const tobi_body *b, double shape, double dt)
+{
+    const tobi_rigid *r = &b->rigid;
+    const double turn = vec3_dot(b->start + 6, r->angular_velocity) - vec3_dot(r->momentum, b->start + 3);
+    return 0.5*turn/dt - shape - b->touch_power;
+}
+
+void tobi_body_find_power(tobi_body *b, double dt)
 {
     const tobi_body_info *i = &b->info;
-    double u[6];
-    tobi_body_mean_velocity(b, u);
+    const int driven = b->rigid.kind == TOBI_PRESCRIBED;
+    double mean[6], shape = 0;
+    tobi_body_mean_velocity(b, mean);
+    const double *u = driven && b->deforms ? b->start : mean;
+    for (int k = 0; b->deforms && k < TOBI_SYSTEM_LIMIT; k++) shape += b->load[k].shape;
     b->power[0] = vec3_dot(i->pressure_force, u) + vec3_dot(i->viscous_force, u) +
-                  vec3_dot(i->pressure_torque, u + 3) + vec3_dot(i->viscous_torque, u + 3);
-    b->power[1] = vec3_dot(i->contact_force, u) + vec3_dot(i->contact_torque, u + 3);
-    if (b->deforms) b->power[0] = b->power[1] = 0;
+                  vec3_dot(i->pressure_torque, u + 3) + vec3_dot(i->viscous_torque, u + 3) + shape;
+    b->power[1] = vec3_dot(i->contact_force, mean) + vec3_dot(i->contact_torque, mean + 3) + b->touch_power;
+    b->power[2] = driven ? -b->power[0] : b->swimmer ? find_swimming(b, shape, dt) : 0;
 }
 
 /* What is rounding alone in 2-D: the force along z and the torques about x and y. */

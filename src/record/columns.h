@@ -53,7 +53,7 @@
     H("spring_energy", "J", real, e->springs, \
       "In springs of joints, hinges and guides, and in lines, with the weight of catenaries.") \
     H("motion_work", "J", real, tobi_works_motions(run), \
-      "Done by bodies with a motion on fluids and solids since the start.") \
+      "Done by motions of bodies on fluids and solids, by swimmers also on themselves, since the start.") \
     H("joint_work", "J", real, tobi_works_joints(run), \
       "Taken from bodies by dampers and motors of joints since the start; below 0: motors drive.") \
     H("line_work", "J", real, run->works.lines, "Taken by the damping of lines since the start.") \
@@ -129,9 +129,12 @@
     B("potential_energy", "J", e.potential, \
       "In gravity, against the lower corner of the domain; 0 of a prescribed body.") \
     B("work", "J", work[0], \
-      "Done on it by pressure_force, viscous_force and their torques since the start; 0 of a body that " \
-      "changes its shape.") \
-    B("contact_work", "J", work[1], "Done on it by contact_force and contact_torque since the start.")
+      "Done on it by fluids and solids since the start: by pressure_force, viscous_force and their torques, " \
+      "and by what a change of its shape adds.") \
+    B("contact_work", "J", work[1], "Done on it by bodies and sides that touch it since the start.") \
+    B("motion_work", "J", work[2], \
+      "Given by its motion since the start: of a prescribed body what fluids and solids take; of a swimmer " \
+      "what its change of shape gives to all that it touches, and to its turn.")
 
 /* The last columns of bodies.csv, which it has in 2-D alone. */
 #define BODY_2D(B) \

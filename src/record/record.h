@@ -35,7 +35,7 @@ typedef struct tobi_solid_tally { double time, impulse[3]; } tobi_solid_tally;  
 
 /* Work since the start, J: on each body by particles and by contact, taken by each joint, by all lines; in
    2-D how far each body has turned, rad. */
-typedef struct tobi_works { double (*body)[2], *joint, lines, *angle; } tobi_works;
+typedef struct tobi_works { double (*body)[3], *joint, lines, *angle; } tobi_works;
 
 /* One field to write. */
 typedef struct tobi_record_field {

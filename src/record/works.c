@@ -39,7 +39,7 @@ void tobi_works_add(tobi_run *run, double dt)
     tobi_works *w = &run->works;
     tobi_joint_info joint;
     for (int k = 0; k < tobi_world_body_count(run->world); k++)
-        for (int by = 0; by < 2; by++) w->body[k][by] += dt*run->world->sim.bodies[k].power[by];
+        for (int by = 0; by < 3; by++) w->body[k][by] += dt*run->world->sim.bodies[k].power[by];
     for (int k = 0; tobi_world_joint(run->world, k, &joint); k++) w->joint[k] += dt*joint.power;
     w->lines += dt*tobi_energy_line_power(run->world);
     follow_turns(run);
@@ -49,7 +49,7 @@ double tobi_works_motions(const tobi_run *run)
 {
     double sum = 0;
     for (int k = 0; k < tobi_world_body_count(run->world); k++)
-        if (run->world->sim.bodies[k].rigid.kind == TOBI_PRESCRIBED) sum -= run->works.body[k][0];
+        sum += run->works.body[k][2];
     return sum;
 }
 
@@ -64,7 +64,8 @@ json_t *tobi_works_to_json(const tobi_run *run)
 {
     json_t *bodies = json_array(), *joints = json_array(), *angles = json_array();
     for (int k = 0; k < tobi_world_body_count(run->world); k++)
-        json_array_append_new(bodies, json_pack("[f, f]", run->works.body[k][0], run->works.body[k][1]));
+        json_array_append_new(bodies, json_pack("[f, f, f]", run->works.body[k][0], run->works.body[k][1],
+                                                run->works.body[k][2]));
     for (int k = 0; k < tobi_world_body_count(run->world); k++)
         json_array_append_new(angles, json_real(run->works.angle[k]));
     for (int k = 0; k < tobi_world_joint_count(run->world); k++)
@@ -85,7 +86,7 @@ bool tobi_works_from_json(const json_t *json, tobi_run *run)
     if (!json_is_number(lines)) return false;
     run->works.lines = json_number_value(lines);
     for (size_t k = 0; k < bodies; k++)
-        for (size_t by = 0; by < 2; by++)
+        for (size_t by = 0; by < 3; by++)
             run->works.body[k][by] = json_number_value(json_array_get(json_array_get(of_bodies, k), by));
     for (size_t k = 0; k < bodies; k++)
         run->works.angle[k] = json_number_value(json_array_get(angles, k));

@@ -343,6 +343,7 @@ tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_er
         tobi_body_info *info = &d->bodies[k].info;
         memset(info->contact_force, 0, sizeof info->contact_force);
         memset(info->contact_torque, 0, sizeof info->contact_torque);
+        d->bodies[k].touch_power = 0;
         if (d->bodies[k].rigid.kind != TOBI_PRESCRIBED) TOBI_TRY(kick(d, &d->bodies[k], t, dt, err));
     }
     TOBI_TRY(find_contacts(d, dt, err));

@@ -314,12 +314,24 @@ static void push_out(tobi_solver *s, int64_t count)
         }
 }
 
+/* What the impulses do by changes of shape; two bodies that both change theirs have a half each. */
+static void share_flow(const tobi_solve_row *r, tobi_body *bodies, double dt)
+{
+    const tobi_touch *c = r->contact;
+    tobi_body *a = &bodies[c->a], *b = c->b >= 0 ? &bodies[c->b] : NULL;
+    const int both = a->deforms && b && b->deforms;
+    const double power = vec3_dot(r->sum, r->flow)/dt;
+    if (a->deforms) a->touch_power += both ? 0.5*power : power;
+    if (b && b->deforms) b->touch_power += both ? 0.5*power : power;
+}
+
 /* Leaves impulses with the contact, and momentum and force with the bodies. */
 static void finish(tobi_solve_row *r, tobi_body *bodies, double dt)
 {
     tobi_touch *c = r->contact;
     c->impulse = r->sum[0];
     for (int i = 0; i < 3; i++) c->slide[i] = r->sum[1]*r->axis[1][i] + r->sum[2]*r->axis[2][i];
+    share_flow(r, bodies, dt);
     for (int side = 0; side < 2; side++) {
         int body = side ? c->b : c->a;
         if (body < 0) continue;

@@ -46,12 +46,12 @@ double sph_still_pressure(const tobi_system *s, const tobi_body *b, int64_t poin
     return still + fmax(1 - b->covered[point]/TOBI_COVERED, 0)*(all - still);
 }
 
-/* Force and torque of still water on a body, where it is wet. */
-static void sum_reference(const tobi_system *s, const tobi_body *b, double f[6])
+/* Force and torque of still water on a body, where it is wet. *shape, if asked for: W, by a change of shape. */
+static void sum_reference(const tobi_system *s, const tobi_body *b, double f[6], double *shape)
 {
     for (int64_t k = 0; k < b->point_count; k++) {
         if (!b->wet[k]) continue;
-        double p = -b->area[k]*sph_still_pressure(s, b, k, b->point[k]), arm[3];
+        double p = -b->area[k]*sph_still_pressure(s, b, k, b->point[k]), arm[3], flow[3];
         const double *n = b->normal[k];
         for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
         for (int a = 0; a < 3; a++) {
@@ -59,6 +59,9 @@ static void sum_reference(const tobi_system *s, const tobi_body *b, double f[6])
             f[a] += p*n[a];
             f[3 + a] += p*(arm[q]*n[r] - arm[r]*n[q]);
         }
+        if (!shape || !b->deforms) continue;
+        tobi_body_point_flow(b, k, flow);
+        *shape += p*vec3_dot(n, flow);
     }
 }
 
@@ -70,8 +73,9 @@ static void add_reference(tobi_system *s)
     for (int a = 0; a < 3; a++) s->info.wall_force[a] += state->reference.down[a]*held;
     for (int k = 0; k < s->sim->body_count; k++) {
         double f[6] = {0};
-        sum_reference(s, &s->sim->bodies[k], f);
-        for (int a = 0; a < 6; a++) s->sim->bodies[k].load[s->number].pressure[a] += f[a];
+        tobi_body_load *load = &s->sim->bodies[k].load[s->number];
+        sum_reference(s, &s->sim->bodies[k], f, &load->shape);
+        for (int a = 0; a < 6; a++) load->pressure[a] += f[a];
         for (int a = 0; a < 3; a++) s->info.wall_force[a] -= f[a];
     }
 }
@@ -112,5 +116,5 @@ void sph_body_hydrostatic(const tobi_system *s, int body, double f[6])
         const tobi_body *b = &s->sim->bodies[body];
         if (push != 0) add_uniform(b, a, -s->fluid[0].density*push*b->info.volume, f);
     }
-    if (sph_of(s)->reference.push > 0) sum_reference(s, &s->sim->bodies[body], f);
+    if (sph_of(s)->reference.push > 0) sum_reference(s, &s->sim->bodies[body], f, NULL);
 }

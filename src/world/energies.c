@@ -1,6 +1,7 @@
 /* What bodies, springs and lines have of energy, and are given. An impulse J does the work J u on a free
    body, u the mean of its velocities before and after the step: then all impulses together give just the
-   kinetic energy that it gains (R.27). Drawback: the work on bodies that change their shape is not known. */
+   kinetic energy that it gains (R.27). Drawback: what a swimmer has in the motion of its parts against each
+   other is left out. */
 #include "world/energies.h"
 #include "base/error.h"
 #include "rigid/lines.h"
@@ -8,7 +9,7 @@
 
 static tobi_body_energy find_energy(const tobi_world *w, const tobi_body *b)
 {
-    tobi_body_energy e = { .power = b->power[0], .contact_power = b->power[1] };
+    tobi_body_energy e = { .power = b->power[0], .contact_power = b->power[1], .motion_power = b->power[2] };
     if (b->rigid.kind == TOBI_PRESCRIBED) return e;
     e.kinetic = tobi_rigid_kinetic_energy(&b->rigid);
     for (int a = 0; a < w->sim.def.dimension; a++)
@@ -23,7 +24,7 @@ void tobi_energy_sum_bodies(const tobi_world *w, tobi_energy *sum)
         const tobi_body_energy e = find_energy(w, &w->sim.bodies[k]);
         sum->kinetic += e.kinetic;
         sum->potential += e.potential;
-        if (w->sim.bodies[k].rigid.kind == TOBI_PRESCRIBED) sum->motion_power -= e.power;
+        sum->motion_power += e.motion_power;
     }
 }
 

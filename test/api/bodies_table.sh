@@ -39,6 +39,6 @@ expect 0 "" run spin.json --out solid --quiet --until 0.1 --set dimension=3 --se
     --set domain.min='[0,0,0]' --set gravity='[0,0,0]' --set bodies.top.box='{"min":[0.3,0.4,0.4],"max":[0.7,0.6,0.6]}' \
     --set bodies.rotor.box='{"min":[1.3,0.4,0.4],"max":[1.7,0.6,0.6]}' --set bodies.rotor.motion.rotation.center='[1.5,0.5,0.5]'
 check "in 3-D there is none" test "$(head -1 solid/bodies.csv | grep -c angle,)$(head -1 solid/bodies.csv |
-    grep -c ',contact_work$')" = 01
+    grep -c ',motion_work$')" = 01
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

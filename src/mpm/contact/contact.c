@@ -284,10 +284,11 @@ typedef union outcome {
         double pushing;                    /* contacts                                                 */
         double fracture, rubbing, material;    /* J, taken by each; on the material by its velocity    */
         double mass;                       /* kg, of the material that answers                         */
+        double shape;                      /* J, on the body, by its change of shape                   */
     };
-    double all[21];
+    double all[22];
 } outcome;
-_Static_assert(sizeof(outcome) == 21*sizeof(double), "the struct and its array are the same numbers");
+_Static_assert(sizeof(outcome) == 22*sizeof(double), "the struct and its array are the same numbers");
 _Static_assert(sizeof(outcome) <= SUMS*sizeof(double), "fits its place in partial");
 
 static void add_impulse(const tobi_contact *k, const tobi_contacts *c, outcome *sum)
@@ -306,6 +307,7 @@ static void add_impulse(const tobi_contact *k, const tobi_contacts *c, outcome *
     find_relative(k, c->velocity, c->spin, relative);
     *(edge ? &sum->fracture : &sum->rubbing) -= vec3_dot(k->impulse, relative);
     sum->material += vec3_dot(k->impulse, k->velocity);
+    sum->shape -= vec3_dot(k->impulse, k->deforming);
     if (!edge && normal > 0) sum->mass += 1/k->mobility[0];
     sum->pushing += edge ? vec3_dot(k->impulse, k->impulse) > 0 : normal > 0;
     if (!edge) return;
@@ -370,6 +372,7 @@ static void give_to_body(tobi_body *b, const outcome *total, const tobi_contact_
         b->rigid.twist[a] += total->pressure[3 + a] + total->friction[3 + a];
         load->edge[a] += total->edge[a]/step->whole;
     }
+    load->shape += total->shape/step->whole;
     for (int a = 0; a < 6; a++) {
         load->pressure[a] += total->pressure[a]/step->whole;
         load->friction[a] += total->friction[a]/step->whole;

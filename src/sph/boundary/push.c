@@ -14,14 +14,17 @@ enum { WORTH = 4 };
 
 static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
 
-/* share: of its speed into the body, that a particle loses. counting: nothing moves, totals are asked for. */
+/* What a walk over the caught particles does: COUNT and WEIGH move nothing, and sum up. */
+typedef enum push_walk { PUSH, COUNT, WEIGH } push_walk;
+
+/* share: of its speed into the body, that a particle loses. */
 typedef struct pusher {
     tobi_system *s;
     const tobi_body *b;
     int body;
     tobi_tree_box box;          /* a spacing around the body */
     double share;
-    int counting;
+    push_walk walk;
 } pusher;
 
 /* Where the surface touched a particle, and where that puts it. */
@@ -129,6 +132,16 @@ static void count_push(const pusher *p, int64_t i, const double normal[3], const
     t[6] = fmax(t[6], answer);
 }
 
+/* J, into t[0]: what the impulse does by a change of shape. */
+static void weigh_push(const pusher *p, int64_t i, const tobi_bvh_hit *hit, double into, double *t)
+{
+    const tobi_system *s = p->s;
+    const double mass = s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
+    double flow[3];
+    tobi_body_place_flow(p->b, (int32_t)hit->triangle, hit->barycentric, hit->point, flow);
+    t[0] += mass*p->share*into*dot(hit->normal, flow);
+}
+
 /* Puts one particle outside; the impulse it loses goes to t[0..5]. */
 static int push_particle(const pusher *p, int64_t i, double *t)
 {
@@ -141,10 +154,9 @@ static int push_particle(const pusher *p, int64_t i, double *t)
         int l = (a + 1)%3, r = (a + 2)%3;
         twist[a] = arm[l]*c.hit.normal[r] - arm[r]*c.hit.normal[l];
     }
-    if (p->counting) {
-        if (into < 0) count_push(p, i, c.hit.normal, twist, t);
-        return 0;
-    }
+    if (into < 0 && p->walk == COUNT) count_push(p, i, c.hit.normal, twist, t);
+    if (into < 0 && p->walk == WEIGH) weigh_push(p, i, &c.hit, into, t);
+    if (p->walk != PUSH) return 0;
     memcpy(&s->particles.position[i].x, c.target, sizeof c.target);
     if (into >= 0) return 1;
     into *= p->share;
@@ -266,13 +278,18 @@ void tobi_push_out(tobi_system *s)
         double t[TOBI_TOTALS];
         pusher p = {.s = s, .b = &s->sim->bodies[k], .body = k, .box = n->tree.box[k], .share = 1};
         if (p.b->rigid.kind != TOBI_PRESCRIBED) {
-            p.counting = 1;
+            p.walk = COUNT;
             push_all(&p, t);
             p.share = 1/(1 + t[0]*t[6]);     /* together they stop the body at most, never turn it round */
-            p.counting = 0;
         }
-        push_all(&p, t);
         tobi_body_load *load = &s->sim->bodies[k].load[s->number];
+        if (p.b->deforms) {
+            p.walk = WEIGH;
+            push_all(&p, t);
+            load->shape += t[0]/s->dt;
+        }
+        p.walk = PUSH;
+        push_all(&p, t);
         for (int a = 0; a < 6; a++) load->pressure[a] += t[a]/s->dt;
     }
 }

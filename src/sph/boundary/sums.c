@@ -3,6 +3,7 @@
    Part g + b of body g and block b is nobody else's, because both ascend with the entries. */
 #include "sph/boundary/boundary.h"
 #include "sph/state.h"
+#include "geom/vec3.h"
 #include <assert.h>
 
 typedef struct summing { tobi_boundary_links *n; tobi_kernel kernel; const void *view; int own; } summing;
@@ -66,28 +67,37 @@ static void turning_traction(const tobi_system *s, const tobi_boundary_link *e, 
 /* Sums of the reactions on the bodies over the entries. */
 typedef struct reaction { const tobi_system *s; int viscous, known; } reaction;
 
+/* N, of one entry at its foot; returns what pushes along the gradient of the link, N m. */
+static double find_force(const reaction *r, const tobi_boundary_link *l, const tobi_boundary_entry *e,
+                         double force[3])
+{
+    const tobi_system *s = r->s;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    const double mass = s->smoothing.volume*s->fluid[s->particles.fluid[l->particle]].density;
+    const double *accel = r->viscous ? e->friction : e->hydrostatic;
+    for (int a = 0; a < 3; a++) force[a] = -mass*accel[a];
+    if (r->viscous) return 0;
+    const float capillary = f->capillary ? f->capillary[l->particle] : 0;
+    const float pressure = r->known ? 0 : f->pressure[l->particle];
+    return 2*s->smoothing.volume*(pressure - capillary);
+}
+
 static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t)
 {
     const reaction *r = view;
     const tobi_system *s = r->s;
     const tobi_boundary_links *links = &sph_of(s)->links;
-    const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t k = begin; k < end; k++) {
         const tobi_boundary_link *l = &links->link[k];
         const tobi_boundary_entry *e = &links->entry[k];
         const tobi_body *b = &s->sim->bodies[l->body];
         double mass = s->smoothing.volume * s->fluid[s->particles.fluid[l->particle]].density,
                force[3], arm[3], turning[3] = {0, 0, 0};
-        const double *accel = r->viscous ? e->friction : e->hydrostatic;
         const int stress = r->viscous && s->sim->def.implicit_viscosity;      /* it acts at the particle */
-        for (int a = 0; a < 3; a++) {
-            force[a] = -mass*accel[a];
+        const double push = find_force(r, l, e, force);
+        for (int a = 0; a < 3; a++)
             arm[a] = e->foot[a] + (stress ? e->offset[a] : 0) + b->lower[a] - b->centre[a];
-        }
         if (r->viscous && !stress) turning_traction(s, l, turning);
-        float capillary = f->capillary ? f->capillary[l->particle] : 0;
-        float pressure = r->known ? 0 : f->pressure[l->particle];
-        double push = r->viscous ? 0 : 2*s->smoothing.volume*(pressure - capillary);
         for (int a = 0; a < 3; a++) {
             int p = (a + 1)%3, q = (a + 2)%3;
             t[a] += force[a] + push*l->gradient[a];
@@ -103,6 +113,38 @@ void tobi_boundary_known_forces(tobi_system *s, int viscous)
     tobi_boundary_sum(s, TOBI_HOST(sum_reaction, 6, 0), &r, 0);
 }
 
+/* totals[0]: W of the same reactions, by changes of shape. */
+static void sum_shape(const void *view, int64_t begin, int64_t end, double *t)
+{
+    const reaction *r = view;
+    const tobi_boundary_links *links = &sph_of(r->s)->links;
+    for (int64_t k = begin; k < end; k++) {
+        const tobi_boundary_link *l = &links->link[k];
+        const tobi_boundary_entry *e = &links->entry[k];
+        const tobi_body *b = &r->s->sim->bodies[l->body];
+        const double *u = b->start;
+        double force[3], flow[3];
+        if (!b->deforms) continue;
+        const double push = find_force(r, l, e, force);
+        tobi_body_place_flow(b, e->triangle, e->barycentric, e->foot, flow);
+        t[0] += vec3_dot(force, flow) +
+                push*(e->wall_flux - vec3_dot(l->gradient, u) - vec3_dot(l->torque_arm, u + 3));
+    }
+}
+
+/* isph finds what its pressure does by itself. */
+static void load_shapes(tobi_system *s)
+{
+    int any = 0;
+    for (int k = 0; k < s->sim->body_count; k++) any |= s->sim->bodies[k].deforms;
+    for (int viscous = sph_of(s)->mirrors != 0; any && viscous < 2; viscous++) {
+        const reaction r = {s, viscous, 0};
+        tobi_boundary_sum(s, TOBI_HOST(sum_shape, 1, 0), &r, 0);
+        for (int k = 0; k < s->sim->body_count; k++)
+            s->sim->bodies[k].load[s->number].shape += sph_of(s)->links.total[k][0];
+    }
+}
+
 void tobi_boundary_load(tobi_system *s)
 {
     for (int viscous = 0; viscous < 2; viscous++) {
@@ -114,4 +156,5 @@ void tobi_boundary_load(tobi_system *s)
             for (int a = 0; a < 6; a++) sum[a] += sph_of(s)->links.total[k][a];
         }
     }
+    load_shapes(s);
 }

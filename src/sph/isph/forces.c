@@ -6,6 +6,7 @@
 #include "sph/boundary/boundary.h"
 #include "sph/isph/forces.h"
 #include "sph/isph/gaps.h"
+#include "sph/isph/shape.h"
 #include "sph/state.h"
 #include "geom/matrix6.h"
 #include "geom/vec3.h"
@@ -88,17 +89,6 @@ static isph_point sum_particles(const body_points *q, int64_t k)
     return sum;
 }
 
-/* m/s2: of a point of a driven body along its normal; of a swimmer by its flow alone. */
-static double normal_acceleration(const body_points *q, int64_t k)
-{
-    const tobi_body *b = body_of(q);
-    double sum = 0;
-    const double (*now)[3] = (const double (*)[3])(b->swimmer ? b->swimmer->point_flow : b->point_velocity);
-    if (!b->motion) return 0;
-    for (int a = 0; a < 3; a++) sum += b->normal[k][a]*(now[k][a] - b->point_before[k][a]);
-    return sum/q->v->dt;
-}
-
 /* What a row of the solids hides of the points of the body that holds it, where it is outside the body. */
 typedef struct hiding { body_points q; double volume; } hiding;
 
@@ -166,7 +156,8 @@ static void weigh_points(const void *view, int64_t begin, int64_t end, double *t
         const double held = q->holds ? p->held/TOBI_COVERED : 0;
         *p = b->area[k] > 0 && b->wet[k] ? sum_particles(q, k) : (isph_point){ 0 };
         p->weight = p->weight > 0 && p->weight + 0.5*held > DRY && held < 1 ? p->weight/(1 - held) : INFINITY;
-        const double more = p->hydrostatic + q->v->density*p->distance*normal_acceleration(q, k);
+        const double along = tobi_body_point_acceleration(b, k, q->v->dt);
+        const double more = p->hydrostatic + q->v->density*p->distance*along;
         isph_bodies_push(b, k, -b->area[k]*more/p->weight, totals);
     }
 }
@@ -538,13 +529,15 @@ void isph_forces_correct(isph_solver *m, tobi_system *s)
 static void remove_added_mass(const isph_solver *m, const tobi_system *s, int k, double f[6])
 {
     const tobi_rigid *r = &s->sim->bodies[k].rigid;
-    const isph_body *b = &m->body[k];
+    isph_body *b = &m->body[k];
     double a[6];
+    memset(b->taken, 0, sizeof b->taken);
     if (r->kind == TOBI_PRESCRIBED) return;
     for (int i = 0; i < 6; i++) {
         const double now = i < 3 ? r->velocity[i] : r->angular_velocity[i - 3];
         a[i] = (now + b->explicit_change[i] - r->before[i])/s->dt + sph_of(s)->links.answer[k][i];
     }
+    memcpy(b->taken, a, sizeof a);
     matrix6_multiply((const double (*)[6])b->added_mass, a);
     for (int i = 0; i < 6; i++) f[i] -= a[i];
 }
@@ -559,6 +552,7 @@ void isph_forces_load(isph_solver *m, tobi_system *s)
         remove_added_mass(m, s, k, f);
     }
     load_sides(m, s);
+    isph_shape_load(m, s);
 }
 
 int64_t isph_forces_bytes(const isph_solver *m)

@@ -27,6 +27,8 @@ typedef struct isph_body {
     double rest_force[6];            /* N, N m: what is not linear in the particles' pressures      */
     double explicit_change[6];       /* m/s, rad/s: what all but the pressure changes               */
     double expected[6];              /* m/s2, rad/s2: by the pressure of the last step              */
+    double taken[6];                 /* m/s2, rad/s2: that the water at its surface was given; 0 of a
+                                        body with a motion                                          */
     double added_mass[6][6];         /* kg: of the water between particles and surface              */
     double added_mass_factor[6][6];  /* 1: what of its own acceleration is left with that           */
     double mobility[6][6];           /* 1/kg: acceleration by a force on it, with that              */

@@ -76,17 +76,6 @@ static void see(void *user, int64_t i, const double r[3])
     if (l->b->friction == TOBI_NO_SLIP) rub(l, i, w*c->plane_scale, depth);
 }
 
-/* m/s2, along the normal, of a driven body in the last step. */
-static double accelerate(const look *l)
-{
-    const int64_t k = l->place->point;
-    double change[3];
-    const tobi_swimmer *w = l->b->swimmer;
-    if (!l->b->motion) return 0;
-    vec3_sub(change, w ? w->point_flow[k] : l->b->point_velocity[k], l->b->point_before[k]);
-    return vec3_dot(change, l->place->normal)/l->s->dt;
-}
-
 void sph_surface_look(const tobi_system *s, const tobi_body *b, const sph_place *place, double *pressure,
                       double shear[3])
 {
@@ -97,8 +86,10 @@ void sph_surface_look(const tobi_system *s, const tobi_body *b, const sph_place 
     const sph_range cells = sph_cells_around(s, place->x, s->smoothing.h);
     sph_visit(s, place->x, &cells, see, &l);
     *pressure = l.pressure;
+    const double more = s->fluid[0].density*l.away;
     if (sph_of(s)->mirrors)
-        *pressure = l.weight > DRY ? (l.pressure + s->fluid[0].density*l.away*accelerate(&l))/l.weight : 0;
+        *pressure = l.weight > DRY ? (l.pressure + more*tobi_body_point_acceleration(b, place->point, s->dt))
+                                         /l.weight : 0;
     *pressure += sph_hydrostatic(s, place->x) - tobi_reference_pressure(&sph_of(s)->reference, place->x) +
                  sph_still_pressure(s, b, place->point, place->x);
     memcpy(shear, l.shear, sizeof l.shear);
