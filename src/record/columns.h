@@ -129,8 +129,8 @@
     B("potential_energy", "J", e.potential, \
       "In gravity, against the lower corner of the domain; 0 of a prescribed body.") \
     B("work", "J", work[0], \
-      "Done on it by fluids and solids since the start: by pressure_force, viscous_force and their torques, " \
-      "and by what a change of its shape adds.") \
+      "Done on it by fluids and solids since the start: by pressure_force, viscous_force and their " \
+      "torques, and by what a change of its shape adds.") \
     B("contact_work", "J", work[1], "Done on it by bodies and sides that touch it since the start.") \
     B("motion_work", "J", work[2], \
       "Given by its motion since the start: of a prescribed body what fluids and solids take; of a swimmer " \

@@ -46,7 +46,7 @@ double sph_still_pressure(const tobi_system *s, const tobi_body *b, int64_t poin
     return still + fmax(1 - b->covered[point]/TOBI_COVERED, 0)*(all - still);
 }
 
-/* Force and torque of still water on a body, where it is wet. *shape, if asked for: W, by a change of shape. */
+/* Force and torque of still water on a body, where it is wet. *shape (or NULL): W, by a change of shape. */
 static void sum_reference(const tobi_system *s, const tobi_body *b, double f[6], double *shape)
 {
     for (int64_t k = 0; k < b->point_count; k++) {

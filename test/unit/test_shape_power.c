@@ -82,7 +82,7 @@ static tobi_body_def make_body(int dimension, double middle, double height, doub
 
 typedef struct totals { double work, contact, motion, kinetic, potential, worst, most; } totals;
 
-/* Work since the start. far: of a shift; the power of each step against force times speed, and the largest. */
+/* Work since the start. far: of a shift; worst: of power against force times speed; most: of these. */
 static totals run(tobi_world *w, double until, const double *far)
 {
     totals s = { 0 };
@@ -124,7 +124,8 @@ static void a_shift_by_script_takes_force_times_speed(void **state)
         b.motion_user = far;
         OK(tobi_world_add_body(w, &b, &err));
         const totals s = run(w, 0.05, far);
-        print_message("%d-D, %s: power is off by %.2g of %.3g W/m\n", dimension, methods[n%4], s.worst, s.most);
+        print_message("%d-D, %s: power is off by %.2g of %.3g W/m\n", dimension, methods[n%4], s.worst,
+                      s.most);
         assert_true(s.most > 1 && s.motion == -s.work && s.kinetic == 0);
         if (!(s.worst < 1e-6*s.most)) fail_msg("%s: off by %g of %g W", methods[n%4], s.worst, s.most);
         tobi_world_destroy(w);
@@ -259,7 +260,8 @@ static void what_stands_up_lifts_its_own_weight(void **state)
         OK(tobi_world_body(w, 0, &i));
         const totals s = run(w, 0.05, NULL);
         const double gained = s.kinetic + s.potential - first.potential, half = i.mass*10*0.025;
-        print_message("%d-D: gained %.4g J, gave %.4g, the floor %.2g\n", dimension, gained, s.motion, s.contact);
+        print_message("%d-D: gained %.4g J, gave %.4g, the floor %.2g\n", dimension, gained, s.motion,
+                      s.contact);
         assert_true(s.potential - first.potential > 0.9*half);
         assert_true(fabs(s.contact) < 0.01*gained);
         if (fabs(gained - s.contact - s.motion) > 0.01*gained)

@@ -1,5 +1,6 @@
-/* The power of pressure on bodies that change their shape, by the velocities that the change adds: the sums of
-   sph/isph/forces.c with those in place of levers. Drawback: gaps beside a body press it as a rigid one. */
+/* The power of pressure on bodies that change their shape, by the velocities that the change adds: the sums
+   of sph/isph/forces.c with those in place of levers (decision 142). Drawback: gaps beside a body press it as
+   a rigid one. */
 #include "sph/isph/shape.h"
 #include "sph/boundary/boundary.h"
 #include "sph/state.h"
