@@ -567,6 +567,7 @@ typedef struct tobi_body_energy {
     double contact_power;         /* W, by bodies and sides that touch it                             */
     double motion_power;          /* W, that its motion gives it: -power; of a swimmer by its change of
                                      shape; 0 of others                                               */
+    double force_power;           /* W, by its constant force and torque and its control program      */
 } tobi_body_energy;
 
 /* Energy of a world besides that of its fluids and solids. */
@@ -576,6 +577,7 @@ typedef struct tobi_energy {
     double motion_power;          /* W, that bodies with a motion give fluids and solids              */
     double joint_power;           /* W, that dampers and motors of joints take from the bodies        */
     double line_power;            /* W, that damping of lines takes from them                         */
+    double force_power;           /* W, that constant forces and control programs give them           */
 } tobi_energy;
 
 #ifdef __cplusplus

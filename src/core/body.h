@@ -120,6 +120,7 @@ typedef struct tobi_body {
     double touch_power;              /* W, of contact, as tobi_body_load.shape                 */
     double power[3];                 /* W: that particles, contact, and its motion give it;
                                         tobi_body_find_power                                   */
+    double force_power;              /* W: of its constant force and control program, the same */
     tobi_body_info info;             /* its forces: tobi_body_sum_loads                        */
 } tobi_body;
 

@@ -57,6 +57,8 @@
     H("joint_work", "J", real, tobi_works_joints(run), \
       "Taken from bodies by dampers and motors of joints since the start; below 0: motors drive.") \
     H("line_work", "J", real, run->works.lines, "Taken by the damping of lines since the start.") \
+    H("force_work", "J", real, tobi_works_forces(run), \
+      "Done on bodies by their constant forces and torques and by control programs since the start.") \
     H("elastic_energy", "J", real, i->elastic_energy, "Stored in solids and compressed liquids of mlsmpm.") \
     H("work_bodies", "J", real, i->work_bodies, \
       "Done by bodies and fluids on the solids since the start; positive: the solids gain.") \
@@ -134,7 +136,9 @@
     B("contact_work", "J", work[1], "Done on it by bodies and sides that touch it since the start.") \
     B("motion_work", "J", work[2], \
       "Given by its motion since the start: of a prescribed body what fluids and solids take; of a swimmer " \
-      "what its change of shape gives to all that it touches, and to its turn.")
+      "what its change of shape gives to all that it touches, and to its turn.") \
+    B("force_work", "J", run->works.force[k], \
+      "Done on it by force and torque of the scene and by those of its control program since the start.")
 
 /* The last columns of bodies.csv, which it has in 2-D alone. */
 #define BODY_2D(B) \

@@ -34,8 +34,8 @@ typedef struct tobi_body_tally { double time, impulse[TOBI_BODY_FORCES][3]; } to
 typedef struct tobi_solid_tally { double time, impulse[3]; } tobi_solid_tally;    /* of liquids */
 
 /* Work since the start, J: on each body by particles and by contact, taken by each joint, by all lines; in
-   2-D how far each body has turned, rad. */
-typedef struct tobi_works { double (*body)[3], *joint, lines, *angle; } tobi_works;
+   2-D how far each body has turned, rad; on each body by its constant force and control program. */
+typedef struct tobi_works { double (*body)[3], *joint, lines, *angle, *force; } tobi_works;
 
 /* One field to write. */
 typedef struct tobi_record_field {
@@ -217,6 +217,7 @@ void tobi_works_free(tobi_run *run);
 void tobi_works_add(tobi_run *run, double dt);
 double tobi_works_motions(const tobi_run *run);
 double tobi_works_joints(const tobi_run *run);
+double tobi_works_forces(const tobi_run *run);
 /* For checkpoints; older ones have none: json NULL, works count from there on. */
 struct json_t *tobi_works_to_json(const tobi_run *run);
 bool tobi_works_from_json(const struct json_t *json, tobi_run *run);

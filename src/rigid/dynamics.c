@@ -91,6 +91,8 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
     memcpy(force, r->force, sizeof force);
     memcpy(torque, r->torque, sizeof torque);
     if (r->control) TOBI_TRY(tobi_control_run(d, b, t, dt, force, torque, &hold, err));
+    memcpy(r->given, force, sizeof force);
+    memcpy(r->given + 3, torque, sizeof torque);
     vec3_add_scaled(force, force, 1, r->inertial);
     vec3_add_scaled(torque, torque, 1, r->inertial + 3);
     tobi_line_load now = { 0 }, mean = { 0 };

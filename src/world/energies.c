@@ -10,6 +10,7 @@
 static tobi_body_energy find_energy(const tobi_world *w, const tobi_body *b)
 {
     tobi_body_energy e = { .power = b->power[0], .contact_power = b->power[1], .motion_power = b->power[2] };
+    e.force_power = b->force_power;
     if (b->rigid.kind == TOBI_PRESCRIBED) return e;
     e.kinetic = tobi_rigid_kinetic_energy(&b->rigid);
     for (int a = 0; a < w->sim.def.dimension; a++)
@@ -25,6 +26,7 @@ void tobi_energy_sum_bodies(const tobi_world *w, tobi_energy *sum)
         sum->kinetic += e.kinetic;
         sum->potential += e.potential;
         sum->motion_power += e.motion_power;
+        sum->force_power += e.force_power;
     }
 }
 

@@ -5,7 +5,8 @@
 
 struct tobi_world;
 
-/* Kinetic and potential energy of the bodies, and the power of those with a motion; the rest is 0. */
+/* Kinetic and potential energy of the bodies, the power of those with a motion and of given
+   forces; the rest is 0. */
 void tobi_energy_sum_bodies(const struct tobi_world *w, tobi_energy *sum);
 /* W: of the damping of all lines. */
 double tobi_energy_line_power(const struct tobi_world *w);

@@ -42,7 +42,10 @@ static tobi_body_def make_brick(int dimension, const double middle[3])
 static const double middle[3] = { 2, 2, 2 };
 
 /* Energies, and the work of all steps since `start`. */
-typedef struct ledger { tobi_energy now, start; double joints, lines, motions, work, contact; } ledger;
+typedef struct ledger {
+    tobi_energy now, start;
+    double joints, lines, motions, forces, work, contact, given;
+} ledger;
 
 static void open_ledger(ledger *l, tobi_world *w)
 {
@@ -62,6 +65,8 @@ static void follow(ledger *l, tobi_world *w, double until)
         l->joints += info.dt*l->now.joint_power;
         l->lines += info.dt*l->now.line_power;
         l->motions += info.dt*l->now.motion_power;
+        l->forces += info.dt*l->now.force_power;
+        l->given += info.dt*b.force_power;
         l->work += info.dt*b.power;
         l->contact += info.dt*b.contact_power;
     }
@@ -150,6 +155,56 @@ static void the_work_of_a_motor_is_the_energy_gained(void **state)
         assert_true(l.now.kinetic > 1 && l.joints < -1);
         if (fabs(gain_of(&l) + l.joints) > 1e-4*fabs(l.joints))
             fail_msg("%d-D, own %d: gained %g J, the motor gave %g", dimension, own, gain_of(&l), -l.joints);
+        tobi_world_destroy(w);
+    }
+}
+
+/* A force that swings and a torque against the turn, of some N and N m. */
+static tobi_status push(void *user, const tobi_control_input *in, tobi_control_output *out, tobi_error *err)
+{
+    (void)user;
+    (void)err;
+    out->force[0] = 30*cos(20*in->time);
+    out->force[1] = 10;
+    out->torque[2] = -0.5*in->angular_velocity[2];
+    return TOBI_OK;
+}
+
+/* Free, on a hinge beside its middle, and over the floor, which it meets: all gained is of forces and
+   contact. A hinge takes the mean of a program's force before and now. */
+static void the_work_of_forces_is_the_energy_gained(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 12; n++) {
+        const int dimension = 2 + n/6, controlled = n/3%2, held = n%3;
+        tobi_world *w = open_world(dimension, 10, 1e-4);
+        double place[3] = { 2, 2, 2 };
+        if (held == 2) place[dimension - 1] = 0.4;
+        tobi_body_def def = make_brick(dimension, place);
+        ledger l;
+        def.dynamics = controlled ? TOBI_CONTROLLED : TOBI_FREE;
+        if (controlled) def.control = push;
+        def.mass = 3;
+        def.force[0] = 20;
+        def.torque[2] = 0.4;
+        def.angular_velocity[2] = held == 1 ? 0 : 2;
+        if (held == 1) {
+            def.hinge_axis[2] = 1;
+            memcpy(def.hinge_point, place, sizeof place);
+            def.hinge_point[0] += 0.1;
+        }
+        OK(tobi_world_add_body(w, &def, &err));
+        open_ledger(&l, w);
+        follow(&l, w, 0.4);
+        assert_true(l.forces == l.given && fabs(l.forces) > 0.05);
+        if (held == 2) assert_true(l.contact < -0.1);
+        const double wrong = gain_of(&l) - l.forces - l.contact;
+        const double allowed = held == 1 ? (controlled ? 2e-3*fabs(l.forces) : 2e-4*l.now.kinetic) :
+                               held == 2 ? 5e-3*fabs(l.contact) :
+                               controlled ? 1e-6 : 1e-9;     /* its first drift knows no program yet */
+        if (fabs(wrong) > allowed)
+            fail_msg("%d-D, case %d: gained %g J, forces gave %g, contact %g: %g too many", dimension, n,
+                     gain_of(&l), l.forces, l.contact, wrong);
         tobi_world_destroy(w);
     }
 }
@@ -353,6 +408,7 @@ int main(void)
         cmocka_unit_test(a_body_that_falls_and_tumbles_keeps_its_energy),
         cmocka_unit_test(contact_takes_what_a_body_loses),
         cmocka_unit_test(the_work_of_a_motor_is_the_energy_gained),
+        cmocka_unit_test(the_work_of_forces_is_the_energy_gained),
         cmocka_unit_test(a_spring_pendulum_keeps_its_energy_but_for_the_damper),
         cmocka_unit_test(lines_and_hinges_keep_energy_too),
         cmocka_unit_test(a_catenary_has_the_energy_of_its_pulls),
