@@ -25,13 +25,18 @@ static const char *const column_names[COLUMNS] = {"time", "x",  "y",  "z",     "
                                                   "ax",   "ay", "az", "angle", "roll", "pitch", "yaw",
                                                   "speed", "flow_rate", "torque", "position", "force"};
 
-/* The units that a column's name may bring along, as in "x [m]". */
-static const char *const length_units[] = {"m", NULL}, *const time_units[] = {"s", NULL};
-static const char *const pull_units[] = {"m/s2", NULL};
-static const char *const speed_units[] = {"m/s", NULL}, *const rate_units[] = {"m3/s", "m2/s", NULL};
-static const char *const turn_units[] = {"degrees/s", "deg/s", NULL}, *const torque_units[] = {"N m", NULL};
-static const char *const force_units[] = {"N", NULL};
-static const char *const plain_units[] = {"1", NULL}, *const angle_units[] = {"degrees", "deg", NULL};
+/* The units that a column's name may bring along, as in "x [mm]", and how many of the first one is; the first
+   holds without a unit. */
+typedef struct unit { const char *name; double scale; } unit;
+static const unit length_units[] = {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {0}};
+static const unit time_units[] = {{"s", 1}, {"ms", 1e-3}, {0}};
+static const unit pull_units[] = {{"m/s2", 1}, {"m/s^2", 1}, {0}};
+static const unit speed_units[] = {{"m/s", 1}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {0}};
+static const unit rate_units[] = {{"m3/s", 1}, {"m2/s", 1}, {0}}, plain_units[] = {{"1", 1}, {0}};
+static const unit turn_units[] = {{"degrees/s", 1}, {"deg/s", 1}, {"rad/s", 1/DEGREE}, {0}};
+static const unit angle_units[] = {{"degrees", 1}, {"deg", 1}, {"rad", 1/DEGREE}, {0}};
+static const unit torque_units[] = {{"N m", 1}, {"Nm", 1}, {"kN m", 1e3}, {"kNm", 1e3}, {0}};
+static const unit force_units[] = {{"N", 1}, {"kN", 1e3}, {0}};
 
 typedef struct keyframe {
     double time, shift[3], turn[4];     /* s, m, unit quaternion                       */
@@ -49,6 +54,7 @@ typedef struct reader {
     int64_t line;
     const char *separators;             /* those that the header may have, then the one that it has */
     int meaning[MOST_COLUMNS];          /* column of each field of a line              */
+    double scale[MOST_COLUMNS];         /* of its unit                                 */
     int fields;
     int given[COLUMNS];
 } reader;
@@ -150,7 +156,7 @@ static tobi_status check_columns(const reader *r, tobi_error *err)
     return TOBI_OK;
 }
 
-static const char *const *column_units(const reader *r, column c)
+static const unit *column_units(const reader *r, column c)
 {
     if (c == TIME) return time_units;
     if (c == FORCE) return force_units;
@@ -172,20 +178,25 @@ static char *split_unit(char *field, char *closing)
     return unit + 1;
 }
 
-/* Another unit than the column's own would be misread, so it is refused. */
-static tobi_status check_unit(const reader *r, char *unit, char closing, column c, tobi_error *err)
+/* A unit that is not known would be misread, so it is refused. */
+static tobi_status read_unit(const reader *r, char *text, char closing, column c, double *scale,
+                             tobi_error *err)
 {
-    const char *const *units = column_units(r, c);
-    size_t n = strlen(unit);
-    if (n < 2 || unit[n - 1] != closing)
+    const unit *units = column_units(r, c);
+    size_t n = strlen(text);
+    if (n < 2 || text[n - 1] != closing)
         return fail_here(r, err, closing == ']' ? "no ] after the unit [" : "no ) after the unit (",
-                         tobi_excerpt(unit).text);
-    unit[n - 1] = 0;
-    for (int k = 0; units[k]; k++)
-        if (strcmp(unit, units[k]) == 0) return TOBI_OK;
-    return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: column %s is in [%s]; allowed is [%s] or no "
-                     "unit", r->what, r->path, (long long)r->line, column_names[c], tobi_excerpt(unit).text,
-                     units[0]);
+                         tobi_excerpt(text).text);
+    text[n - 1] = 0;
+    char all[80] = "";
+    for (int k = 0; units[k].name; k++) {
+        *scale = units[k].scale;
+        if (strcmp(text, units[k].name) == 0) return TOBI_OK;
+        snprintf(all + strlen(all), sizeof all - strlen(all), "%s[%s]", k ? ", " : "", units[k].name);
+    }
+    return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: column %s is in [%s]; allowed is %s or no unit, which "
+                     "is %s", r->what, r->path, (long long)r->line, column_names[c], tobi_excerpt(text).text,
+                     all, units[0].name);
 }
 
 static tobi_status read_header(reader *r, char *line, tobi_error *err)
@@ -194,7 +205,8 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
     const char *first = strpbrk(line, r->separators = ",;\t");
     if (first) r->separators = *first == ',' ? "," : *first == ';' ? ";" : "\t";
     for (char *field; (field = next_field(r, &rest)) != NULL;) {
-        char closing = 0, *unit = split_unit(field, &closing);
+        char closing = 0, *text = split_unit(field, &closing);
+        double scale = 1;
         if (!*field) return fail_here(r, err, "an empty column name (a comma too many?)", "");
         int found = strcasecmp(field, "t") == 0 ? TIME : COLUMNS;
         for (int c = 0; c < COLUMNS && found == COLUMNS; c++)
@@ -207,8 +219,9 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
                              : is_gravity(r) ? ", x, y, z (m/s2)"
                              : ", x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, pitch, yaw "
                                "(degrees)", is_motor(r) ? motor_columns(r) : "");
-        if (unit) TOBI_TRY(check_unit(r, unit, closing, found, err));
+        if (text) TOBI_TRY(read_unit(r, text, closing, found, &scale, err));
         if (r->given[found]++) return fail_here(r, err, "a column comes twice: ", column_names[found]);
+        r->scale[r->fields] = scale;
         r->meaning[r->fields++] = found;      /* no more than COLUMNS, since none comes twice */
     }
     return check_columns(r, err);
@@ -231,7 +244,7 @@ static tobi_status read_numbers(const reader *r, char *line, double value[COLUMN
             return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: %.4g in column %s is too large; allowed "
                              "is up to %g", r->what, r->path, (long long)r->line, x,
                              column_names[r->meaning[n]], LARGEST);
-        value[r->meaning[n]] = x;
+        value[r->meaning[n]] = r->scale[n]*x;
     }
     if (n == r->fields && !field) return TOBI_OK;
     return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: the row has %s columns than the header, %d",

@@ -9,9 +9,10 @@
      ax, ay, az, angle                 an axis and degrees about it
      roll, pitch, yaw                  degrees: about x, then y, then z (fixed axes); a missing one is 0
 
-   A name may bring its unit in brackets, as Tobiuo's own tables do: "time [s]", "x [m]", "yaw [degrees]"
-   or [deg], "qw [1]"; other units are refused. Columns are parted by comma, semicolon or tab. Numbers
-   and the rates from row to row are at most 1e30 in size. Position = pivot + shift + R (rest - pivot).
+   A name may bring its unit in brackets, as Tobiuo's own tables do: "time [s]" or [ms], "x [m]", [cm] or
+   [mm], "yaw [degrees]", [deg] or [rad], "qw [1]"; other units are refused. Columns are parted by comma,
+   semicolon or tab. Numbers and the rates from row to row are at most 1e30 in size. Position = pivot + shift
+   + R (rest - pivot).
 
    Between rows shift and turn are cubic, with continuous rates: Hermite curves whose slope at a row is
    that of the parabola through it and its neighbours (for turns Kim, Kim & Shin, SIGGRAPH 1995). So rows of

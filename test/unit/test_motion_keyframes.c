@@ -172,6 +172,15 @@ static void finer_rows_come_closer(void **state)
     if (!(error[1] < error[0]/6 && error[0] < 5e-3)) fail_msg("errors %g, %g", error[0], error[1]);
 }
 
+static void units_are_read(void **state)
+{
+    (void)state;
+    tobi_motion *m = load("time [ms];x (mm);y [cm];z [m];yaw [rad]\n0;0;0;0;0\n500;200;-30;4;1\n", NULL);
+    AT(m, 0.5, 0, 0, 1, 0.2, -0.3, 5);
+    AT(m, 0.5, 1, 0, 0, 0.2 + cos(1), -0.3 + sin(1), 4);
+    tobi_motion_free(m);
+}
+
 static void bad_files_are_named_with_their_line(void **state)
 {
     (void)state;
@@ -195,11 +204,13 @@ static void bad_files_are_named_with_their_line(void **state)
         {"time,qw,qx,qy,qz\n0,0,0,0,0\n", "no length"},
         {"time,ax,ay,az,angle\n0,0,0,0,5\n", "no length"},
         {"time,x,\n0,1\n", "rows.csv:1: an empty column name (a comma too many?)"},
-        {"time [s],x [mm]\n0,1\n", "rows.csv:1: column x is in [mm]; allowed is [m] or no unit"},
-        {"time [ms],x\n0,1\n", "column time is in [ms]; allowed is [s]"},
-        {"time,yaw [rad]\n0,1\n", "column yaw is in [rad]; allowed is [degrees]"},
+        {"time [s],x [in]\n0,1\n", "rows.csv:1: column x is in [in]; allowed is [m], [cm], [mm] or no "
+         "unit, which is m"},
+        {"time [min],x\n0,1\n", "column time is in [min]; allowed is [s], [ms]"},
+        {"time,yaw [turns]\n0,1\n", "column yaw is in [turns]; allowed is [degrees], [deg], [rad] or "
+         "no unit, which is degrees"},
         {"time,x [m\n0,1\n", "rows.csv:1: no ] after the unit [m"},
-        {"time (ms),x\n0,1\n", "column time is in [ms]; allowed is [s]"},
+        {"time (h),x\n0,1\n", "column time is in [h]; allowed is [s]"},
         {"time (s,x\n0,1\n", "rows.csv:1: no ) after the unit (s"},
         {"time,[m]\n0,1\n", "rows.csv:1: an empty column name"},
         {"time,x\n0,1\n1,-2e30\n", "rows.csv:3: -2e+30 in column x is too large; allowed is up to 1e+30"},
@@ -241,6 +252,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(constant_acceleration_is_met_exactly),
         cmocka_unit_test(a_constant_turn_is_met_exactly),
+        cmocka_unit_test(units_are_read),
         cmocka_unit_test(roll_comes_before_pitch_before_yaw),
         cmocka_unit_test(standing_still_is_exact),
         cmocka_unit_test(names_may_bring_their_units),
