@@ -42,7 +42,7 @@ static void widen_range(viewer *v, int anew)
     if (anew) v->look.low = INFINITY, v->look.high = -INFINITY;
     else if (v->flat) v->look.high = v->look.low;
     for (int64_t i = 0; f && i < m->count; i++) {
-        const double value = field_value(f, i);
+        const double value = tobi_drawing_value(&v->def.looks, f, i);
         if (!isfinite(value)) continue;
         v->look.low = fmin(v->look.low, value);
         v->look.high = fmax(v->look.high, value);

@@ -61,16 +61,6 @@ const tobi_moment_field *find_field(const tobi_moment *m, const char *name)
     return NULL;
 }
 
-double field_value(const tobi_moment_field *f, int64_t particle)
-{
-    if (!f) return 0;
-    const double *v = f->values + particle*f->components;
-    if (f->components == 1) return v[0];
-    double square = 0;
-    for (int k = 0; k < f->components; k++) square += v[k]*v[k];
-    return sqrt(square);
-}
-
 /* Viridis, which grows evenly lighter and is told apart by any colour vision. */
 void map_color(double share, float color[3])
 {

@@ -43,9 +43,8 @@ int painter_take(painter *p, painting *out);
 void painting_free(painting *p);
 void painter_free(painter *p);
 
-/* The value of a field at a particle: its size if it is a vector. NULL field: 0. */
+/* NULL: the moment does not have it. */
 const tobi_moment_field *find_field(const tobi_moment *m, const char *name);
-double field_value(const tobi_moment_field *f, int64_t particle);
 /* Colour of a share 0 to 1 of the colour map, sRGB 0 to 1. */
 void map_color(double share, float color[3]);
 /* 1: hidden by the clip plane. */

@@ -69,6 +69,10 @@ TOBI_API double tobi_looks_radius(const tobi_looks *looks, int material);
    out; results have it. */
 TOBI_API int tobi_looks_hides(const tobi_looks *looks, double time, const double x[3]);
 
+/* The number that a field's colour shows, of particle i: of a vector its length, of the vorticity in 2-D that
+   about z, as files have it in floats. field: NULL gives 0. */
+TOBI_API double tobi_drawing_value(const tobi_looks *looks, const tobi_moment_field *field, int64_t i);
+
 typedef struct tobi_drawing tobi_drawing;
 /* The picture of a moment as a view shows it. It borrows looks and moment until it is freed. Fields that
    colours need: velocity, material, part, piece, particle_id, and that of the view; without them things have

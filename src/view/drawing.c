@@ -109,12 +109,20 @@ static int number_at(const tobi_moment_field *f, int64_t i, int otherwise)
     return v > -1e9 && v < 1e9 ? (int)v : otherwise;
 }
 
-/* As files have it: of a vector its length. */
-static float value_at(const tobi_moment_field *f, int64_t i)
+/* In 2-D the vorticity is along z: its sign is the sense of the turn. */
+static int is_turn(const tobi_looks *looks, const char *field)
 {
+    return looks->dimension == 2 && field && strcmp(field, "vorticity") == 0;
+}
+
+/* In floats, as files have it. */
+double tobi_drawing_value(const tobi_looks *looks, const tobi_moment_field *f, int64_t i)
+{
+    if (!f) return 0;
     const double *v = f->values + i*f->components;
     double square = 0;
     if (f->components == 1) return (float)*v;
+    if (f->components == 3 && is_turn(looks, f->name)) return (float)v[2];
     for (int k = 0; k < f->components; k++) square += (double)(float)v[k]*(double)(float)v[k];
     return (float)sqrt(square);
 }
@@ -186,8 +194,9 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
     const tobi_moment_field *velocity = find_field(m, "velocity");
     const tobi_moment_field *field = d->view->field ? find_field(m, d->view->field) : velocity;
     if (d->view->field && !field)
-        return tobi_fail(err, TOBI_NOT_FOUND, "the output has no field '%s'; output.fields of the scene "
-                         "writes it", d->view->field);
+        return tobi_fail(err, TOBI_NOT_FOUND, "the output has no field '%s'; a run writes it with "
+                         "\"fields\": [\"usual\", \"%s\"] in output of the scene", d->view->field,
+                         d->view->field);
     const int arrows = (d->view->arrows || d->view->streamlines > 0) && velocity;
     TOBI_TRY(make_arrays(d, arrows, err));
     TOBI_TRY(make_skins(d, err));
@@ -203,7 +212,7 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
         if (d->skin) take_skin(d, i, to, material);
         d->group[to] = look->liquid ? -look->kind : piece >= 0 ? 1 + piece : -material;
         const int color = tobi_drawing_color(d, material, number_at(d->part, i, 0), piece);
-        d->values[to] = d->has_palette ? (float)color : field ? value_at(field, i) : 0;
+        d->values[to] = d->has_palette ? (float)color : (float)tobi_drawing_value(d->looks, field, i);
         if (d->own) take_own_color(d, to, color);
     }
     return TOBI_OK;
@@ -266,6 +275,7 @@ static void set_range(tobi_drawing *d)
             high = fmax(high, d->values[i]);
         }
         if (!(low <= high)) low = high = 0;
+        if (is_turn(d->looks, name)) high = fmax(fabs(low), fabs(high)), low = -high;
         if (low == high) high = low + fmax(1e-6*fabs(low), 1e-6);
     }
     d->picture.value_min = low;

@@ -98,7 +98,7 @@ expect 1 "\"frame\", the name of the output's own pictures" run dam.json --out n
 expect 1 "\"a\" is the name of views[0] too" run dam.json --out no --set 'output.views=[{"name": "a"}, {"name": "a"}]'
 expect 1 "there are no results of a run" picture .
 expect 1 "there is no output 9" picture dam --output 9
-expect 1 "the output has no field 'vorticity'; output.fields of the scene writes it" \
+expect 1 "the output has no field 'vorticity'; a run writes it with \"fields\": [\"usual\", \"vorticity\"] in output" \
     picture dam --set output.picture.field=vorticity
 expect 1 "there is no field \"pressur\"" picture dam --set output.picture.field=pressur
 expect 1 "is \"solids\", but the scene has none" picture dam --set output.picture.field_of=solids

@@ -291,6 +291,30 @@ static void tracks_are_read(void **state)
     rmdir(folder);
 }
 
+/* In 2-D counterclockwise is above 0 and 0 in the middle of the colours; in 3-D it is a length. */
+static void vorticity_has_a_sign_in_the_plane(void **state)
+{
+    (void)state;
+    char name[] = "vorticity";
+    tobi_view_def view = plain_view();
+    tobi_moment_field turn[2] = { { field_name, 1, material }, { name, 3, speed } };
+    tobi_moment m = moment;
+    m.fields = turn;
+    view.field = name;
+    for (int dimension = 2; dimension <= 3; dimension++) {
+        tobi_looks of = looks;
+        of.dimension = dimension;
+        for (int i = 0; i < N; i++) material[i] = 0, speed[3*i + 2] = i - 30;
+        tobi_drawing *d;
+        assert_int_equal(tobi_drawing_make(&of, &m, &view, &d, NULL), TOBI_OK);
+        const tobi_picture *p = tobi_drawing_picture(d);
+        assert_true(p->values[0] == (dimension == 2 ? -30 : 30));
+        assert_true(p->value_min == (dimension == 2 ? -30 : 0) && p->value_max == 30);
+        tobi_drawing_free(d);
+    }
+    memset(speed, 0, sizeof speed);
+}
+
 static void wrong_calls_are_refused(void **state)
 {
     (void)state;
@@ -301,7 +325,8 @@ static void wrong_calls_are_refused(void **state)
     REFUSED(tobi_drawing_make(&looks, &moment, NULL, &d, &err), TOBI_INVALID, "the view is NULL");
     view.field = "vorticity";
     REFUSED(tobi_drawing_make(&looks, &moment, &view, &d, &err), TOBI_NOT_FOUND,
-            "the output has no field 'vorticity'; output.fields of the scene writes it");
+            "the output has no field 'vorticity'; a run writes it with \"fields\": [\"usual\", "
+            "\"vorticity\"] in output of the scene");
     assert_null(d);
 }
 
@@ -340,7 +365,8 @@ int main(void)
         cmocka_unit_test(numbers_have_their_digits), cmocka_unit_test(numbers_at_axes_are_whole),
         cmocka_unit_test(solids_beside_liquids_have_colors), cmocka_unit_test(bodies_are_found_by_name),
         cmocka_unit_test(fields_of_one_kind), cmocka_unit_test(isolines_of_one_kind),
-        cmocka_unit_test(tracks_are_read), cmocka_unit_test(wrong_calls_are_refused)
+        cmocka_unit_test(tracks_are_read), cmocka_unit_test(vorticity_has_a_sign_in_the_plane),
+        cmocka_unit_test(wrong_calls_are_refused)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
