@@ -68,7 +68,7 @@ static void find_color(const tobi_looks *s, int material, int part, int tint, fl
     const int cored = look->core_color[0] >= 0;
     set_color(part != SKIN && cored ? look->core_color : look->color, find_default(s, material), out);
     const int pale = out[0] + out[1] + out[2] > 2;
-    if (part == FACE && !cored) mix(out, pale ? black : white, 0.4f);
+    if (part == FACE && !cored) mix(out, pale ? black : white, pale ? 0.15f : 0.4f);
     if (tint > 0) mix(out, tints[tint - 1], 0.3f);
 }
 

@@ -291,6 +291,18 @@ static void tracks_are_read(void **state)
     rmdir(folder);
 }
 
+/* Tofu is cut into tofu: the faces are told apart and are no shadows. */
+static void faces_of_pale_solids_stay_pale(void **state)
+{
+    (void)state;
+    tobi_material_look pale[1] = { LOOK(.color = { 245, 240, 220 }, .visible = 1) };
+    const tobi_looks of = { .dimension = 2, .material_count = 1, .materials = pale };
+    float skin[4], face[4];
+    tobi_looks_color(&of, 0, 0, skin);
+    tobi_looks_color(&of, 0, 2, face);
+    for (int k = 0; k < 3; k++) assert_true(face[k] < 0.95f*skin[k] && face[k] > 0.8f*skin[k]);
+}
+
 /* In 2-D counterclockwise is above 0 and 0 in the middle of the colours; in 3-D it is a length. */
 static void vorticity_has_a_sign_in_the_plane(void **state)
 {
@@ -366,7 +378,7 @@ int main(void)
         cmocka_unit_test(solids_beside_liquids_have_colors), cmocka_unit_test(bodies_are_found_by_name),
         cmocka_unit_test(fields_of_one_kind), cmocka_unit_test(isolines_of_one_kind),
         cmocka_unit_test(tracks_are_read), cmocka_unit_test(vorticity_has_a_sign_in_the_plane),
-        cmocka_unit_test(wrong_calls_are_refused)
+        cmocka_unit_test(faces_of_pale_solids_stay_pale), cmocka_unit_test(wrong_calls_are_refused)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
