@@ -56,10 +56,30 @@ static void free_tables(table *list, int count)
 /* The table has the largest and the least value of such a column. body: of its rows; NULL: of all. */
 typedef struct measure { int file; const char *body, *column; } measure;
 
-enum { FILES = 3, BODIES = FILES - 1, MEASURES = 600 };
-static const char *const files[FILES] = { "probes.csv", "lines.csv", "bodies.csv" };
+enum { FILES = 4, BODIES = FILES - 1, MEASURES = 600 };
+static const char *const files[FILES] = { "probes.csv", "lines.csv", "joints.csv", "bodies.csv" };
 
 typedef struct measures { table *of[FILES]; measure one[MEASURES]; int count; } measures;
+
+/* What is read of a row: a column, or the sum of two. */
+typedef struct reading { int first, second; } reading;
+
+/* force_x of a body is the sum that `tobiuo plot` draws: pressure and friction. first -1: no such column. */
+static reading find_reading(const table *t, const char *column)
+{
+    char part[2][64];
+    reading r = { t->columns ? table_column(t, column) : -1, -1 };
+    if (r.first >= 0 || !t->columns || strncmp(column, "force_", 6) != 0) return r;
+    snprintf(part[0], sizeof part[0], "mean_pressure_%s", column);
+    snprintf(part[1], sizeof part[1], "mean_viscous_%s", column);
+    r = (reading){ table_column(t, part[0]), table_column(t, part[1]) };
+    return r.second < 0 ? (reading){ -1, -1 } : r;
+}
+
+static double read_number(const table *t, size_t row, reading r)
+{
+    return table_number(t, row, r.first) + (r.second >= 0 ? table_number(t, row, r.second) : 0);
+}
 
 static int is_of(const table *t, size_t row, const char *body)
 {
@@ -70,10 +90,10 @@ static int is_of(const table *t, size_t row, const char *body)
 /* sign 1: the largest; -1: the least. */
 static double extreme(const table *t, const measure *m, double sign)
 {
-    const int k = t->columns ? table_column(t, m->column) : -1;
+    const reading r = find_reading(t, m->column);
     double most = NAN;
-    for (size_t i = 0; k >= 0 && i < t->rows; i++) {
-        const double value = table_number(t, i, k);
+    for (size_t i = 0; r.first >= 0 && i < t->rows; i++) {
+        const double value = read_number(t, i, r);
         if (is_of(t, i, m->body) && !isnan(value) && !(sign*value < sign*most)) most = value;
     }
     return most;
@@ -92,10 +112,11 @@ static void add_measure(measures *m, int file, const char *body, const char *col
     if (m->count < MEASURES) m->one[m->count++] = (measure){ file, body, column };
 }
 
-/* Sensors, lines, and the places of bodies that move. */
+/* Sensors, lines, joints, the places of bodies that move, and the forces on bodies. */
 static void find_measures(const sweep *s, measures *m)
 {
-    static const char *const places[] = { "position_x", "position_y", "position_z" };
+    static const char *const of_body[] = { "position_x", "position_y", "position_z",
+                                           "force_x", "force_y", "force_z" };
     const table *t;
     for (int f = 0; f < FILES; f++) m->of[f] = read_all(s, files[f], 1);
     for (int f = 0; f < BODIES; f++)
@@ -106,11 +127,26 @@ static void find_measures(const sweep *s, measures *m)
     for (size_t i = 0; name >= 0 && i < t->rows; i++) {
         const char *body = t->cells[i*(size_t)t->columns + (size_t)name];
         if (i > 0 && strcmp(body, t->cells[name]) == 0) return;      /* the second output begins */
-        for (int a = 0; a < 3; a++) {
-            const measure one = { BODIES, body, places[a] };
-            if (extreme(t, &one, 1) > extreme(t, &one, -1)) add_measure(m, BODIES, body, places[a]);
+        for (int a = 0; a < 6; a++) {
+            const measure one = { BODIES, body, of_body[a] };
+            if (extreme(t, &one, 1) > extreme(t, &one, -1)) add_measure(m, BODIES, body, of_body[a]);
         }
     }
+}
+
+/* That of the first run that has begun. */
+static int find_dimension(const sweep *s)
+{
+    json_t *scene = NULL;
+    for (int run = 0; run < s->runs && !scene; run++) {
+        char *name = sweep_name(s, run), *path = sweep_path(s, "%s/resolved.json", name);
+        scene = json_load_file(path, 0, NULL);
+        free(path);
+        free(name);
+    }
+    const int dimension = json_integer_value(json_object_get(scene, "dimension")) == 2 ? 2 : 3;
+    json_decref(scene);
+    return dimension;
 }
 
 static void add_head(const sweep *s, grid *g, const measures *m)
@@ -122,10 +158,14 @@ static void add_head(const sweep *s, grid *g, const measures *m)
         const char *unit = numbers[k].unit;
         add_cell(g, "%s%s%s%s", numbers[k].key, *unit ? " [" : "", unit, *unit ? "]" : "");
     }
+    const int dimension = find_dimension(s);
     for (int sign = 1; sign >= -1; sign -= 2)
-        for (const measure *one = m->one; one < m->one + m->count; one++)
-            add_cell(g, "%s %s%s%s%s", sign > 0 ? "max" : "min", one->body ? one->body : "",
-                     one->body ? "_" : "", one->column, one->body ? " [m]" : "");
+        for (const measure *one = m->one; one < m->one + m->count; one++) {
+            const char *extremum = sign > 0 ? "max" : "min";
+            if (!one->body) add_cell(g, "%s %s", extremum, one->column);
+            else add_cell(g, "%s %s_%s [%s]", extremum, one->body, one->column,
+                          plot_unit(one->column, dimension));
+        }
 }
 
 static void add_row(const sweep *s, grid *g, int run, const measures *m)
@@ -227,35 +267,58 @@ int sweep_write_table(const sweep *s)
 
 /* --- the plot ------------------------------------------------------------------------------ */
 
-/* The column of a run, from probes.csv, lines.csv or else history.csv, as a curve; 0 if it has none. */
+static void add_point(curve *c, picture *p, double time, double value)
+{
+    c->x[c->count] = time;
+    c->y[c->count++] = value;
+    p->begin = fmin(p->begin, time);
+    p->end = fmax(p->end, time);
+}
+
+/* The rest of "BODY_column", NULL if the text does not begin with this name. */
+static const char *cut_name(const char *text, const char *name)
+{
+    const size_t length = strlen(name);
+    return strncmp(text, name, length) == 0 && text[length] == '_' ? text + length + 1 : NULL;
+}
+
+/* The column of a table, or of a body in it, as a curve; 0 if it has none. */
+static int add_curve(const table *t, const char *column, const char *label, int run, panel *a, picture *p)
+{
+    const int time = t->columns ? table_column(t, "time") : -1;
+    const int name = time < 0 ? -1 : table_column(t, "name");
+    curve c = { .label = label, .colour = run, .style = run < 8 ? CURVE_LINE : CURVE_DASHED };
+    if (time < 0 || a->curves == CURVE_LIMIT) return 0;
+    c.x = calloc(t->rows + 1, sizeof(double)), c.y = calloc(t->rows + 1, sizeof(double));
+    if (!c.x || !c.y) exit(complain("out of memory"));
+    for (size_t i = 0; i < t->rows; i++) {
+        const char *rest = column;
+        if (name >= 0) rest = cut_name(column, t->cells[i*(size_t)t->columns + (size_t)name]);
+        const reading r = rest ? find_reading(t, rest) : (reading){ -1, -1 };
+        if (r.first >= 0) add_point(&c, p, table_number(t, i, time), read_number(t, i, r));
+    }
+    if (c.count) a->curve[a->curves++] = c;
+    else free(c.x), free(c.y);
+    return c.count > 0;
+}
+
+/* The column of a run from the first of its tables that has it. */
 static int add_run(const sweep *s, int run, const char *column, panel *a, picture *p, char **name)
 {
-    static const char *const from[] = { "probes.csv", "lines.csv", "history.csv" };
-    table t = { 0 };
-    int k = -1;
-    for (int f = 0; f < 3 && k < 0; f++) {
+    enum { TABLES = 5 };
+    static const char *const from[TABLES] = { "probes.csv", "lines.csv", "joints.csv", "history.csv",
+                                              "bodies.csv" };
+    int found = 0;
+    for (int f = 0; f < TABLES && !found; f++) {
+        table t = { 0 };
         char *path = sweep_path(s, "%s/%s", *name, from[f]);
-        table_free(&t);
-        if (access(path, F_OK) != 0 || table_read(&t, path) != 0) table_free(&t);
+        if (access(path, F_OK) != 0 || table_read(&t, path) != 0) t = (table){ 0 };
         table_strip_units(&t);
-        k = t.columns ? table_column(&t, column) : -1;
+        found = add_curve(&t, column, *name, run, a, p);
+        table_free(&t);
         free(path);
     }
-    const int time = k < 0 ? -1 : table_column(&t, "time");
-    if (time >= 0 && a->curves < CURVE_LIMIT) {
-        curve *c = &a->curve[a->curves++];
-        *c = (curve){ .label = *name, .colour = run, .style = run < 8 ? CURVE_LINE : CURVE_DASHED,
-                      .x = calloc(t.rows + 1, sizeof(double)), .y = calloc(t.rows + 1, sizeof(double)) };
-        if (!c->x || !c->y) exit(complain("out of memory"));
-        for (size_t i = 0; i < t.rows; i++) {
-            c->x[c->count] = table_number(&t, i, time);
-            c->y[c->count++] = table_number(&t, i, k);
-            p->begin = fmin(p->begin, c->x[i]);
-            p->end = fmax(p->end, c->x[i]);
-        }
-    }
-    table_free(&t);
-    return time >= 0;
+    return found;
 }
 
 /* What is drawn without --plot: the first sensors; kinetic energy and speed where there are none. */
@@ -273,24 +336,10 @@ static int choose_columns(const sweep *s, const char *column[PANEL_LIMIT], table
     return 2;
 }
 
-/* That of the first run that has begun. */
-static int find_dimension(const sweep *s)
-{
-    json_t *scene = NULL;
-    for (int run = 0; run < s->runs && !scene; run++) {
-        char *name = sweep_name(s, run), *path = sweep_path(s, "%s/resolved.json", name);
-        scene = json_load_file(path, 0, NULL);
-        free(path);
-        free(name);
-    }
-    const int dimension = json_integer_value(json_object_get(scene, "dimension")) == 2 ? 2 : 3;
-    json_decref(scene);
-    return dimension;
-}
-
 static int complain_column(const sweep *s)
 {
-    complain("no run has a column \"%s\" in probes.csv, lines.csv or history.csv; nothing is drawn", s->plot);
+    complain("no run has a column \"%s\" in probes.csv, lines.csv, joints.csv, history.csv, nor is it one of "
+             "bodies.csv behind the name of a body, as in BODY_position_x; nothing is drawn", s->plot);
     return EXIT_ERROR;
 }
 

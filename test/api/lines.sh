@@ -43,17 +43,31 @@ check "and the table" grep -q "The columns of lines.csv for each line" out.txt
 
 expect 0 "" sweep buoy.json --set lines.spring.stiffness=100,200 --until 0.1 --out s
 head=$(head -1 s/sweep.csv)
-for column in "max chain_tension [N per m]" "min spring_distance [m]" "max buoy_position_y [m]" "min buoy_position_y [m]"; do
+for column in "max chain_tension [N per m]" "min spring_distance [m]" "max buoy_position_y [m]" "min buoy_position_y [m]" \
+    "max buoy_force_y [N per m]"; do
     check "a sweep has $column" grep -qF ",$column" <(echo "$head")
 done
 check "with the values of the tables" $python -c '
 import csv
 row = list(csv.DictReader(open("s/sweep.csv")))[0]
 run = list(csv.DictReader(open("s/stiffness=100/lines.csv")))
-heave = [float(r["position_y"]) for r in csv.DictReader(open("s/stiffness=100/bodies.csv")) if r["name"] == "buoy"]
+buoy = [r for r in csv.DictReader(open("s/stiffness=100/bodies.csv")) if r["name"] == "buoy"]
+heave = [float(r["position_y"]) for r in buoy]
+force = [float(r["mean_pressure_force_y"]) + float(r["mean_viscous_force_y"]) for r in buoy]
 most = max(float(r["chain_tension [N per m]"]) for r in run)
 near = lambda text, value: abs(float(text) - value) <= 1e-5*abs(value)
-raise SystemExit(not (near(row["max chain_tension [N per m]"], most) and near(row["min buoy_position_y [m]"], min(heave))))'
+raise SystemExit(not (near(row["max chain_tension [N per m]"], most) and near(row["min buoy_position_y [m]"], min(heave)) and
+                      near(row["max buoy_force_y [N per m]"], max(force))))'
+if command -v gnuplot > /dev/null; then
+    for column in buoy_force_y buoy_mean_pressure_force_y; do
+        expect 0 "" sweep buoy.json --set lines.spring.stiffness=100,200 --until 0.1 --out s --plot $column
+        check "a plot of $column of a body" grep -q "$column, N per m" s/sweep.svg
+    done
+    for column in buoy buoy_nothing bu_force_y force_y; do
+        expect 1 "no run has a column \"$column\" in" sweep buoy.json --set lines.spring.stiffness=100,200 \
+            --until 0.1 --out s --plot $column
+    done
+fi
 expect 0 "the run has reached its end, 0.1 s; --until S takes it on" resume s/stiffness=100
 
 echo "$passed passed, $failed failed"
