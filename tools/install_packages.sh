@@ -12,7 +12,7 @@ packages=(gcc libc6-dev cmake ninja-build pkg-config
           libjpeg-dev libglfw3-dev)
 plot_packages=(gnuplot-nox ffmpeg)
 test_packages=(gnuplot-nox ffmpeg chromium xvfb xdotool libgl1-mesa-dri g++ git libcmocka-dev python3 python3-numpy python3-matplotlib
-               python3-vtk9 python3-jsonschema python3-polib)
+               python3-vtk9 python3-jsonschema python3-polib python3-cffi)
 
 list_only=0
 for argument in "$@"; do

@@ -559,8 +559,8 @@ typedef struct tobi_body_info {
     double sampled_volume;        /* m3, number of body particles times spacing^3                     */
 } tobi_body_info;
 
-/* Energy of a body that moves by forces, 0 of others, and what it is given: power, mean over the last step,
-   0 of one that changes its shape. Summed over the steps, power times dt is the work. In 2-D all is per m. */
+/* Energy of a body that moves by forces, 0 of others, and what it is given: power, mean over the last step.
+   Summed over the steps, power times dt is the work. In 2-D all is per m. */
 typedef struct tobi_body_energy {
     double kinetic, potential;    /* J: of centre of mass and turn; in gravity against domain_min     */
     double power;                 /* W, by fluids and solids; of a body with a motion, it takes -power */
@@ -574,7 +574,7 @@ typedef struct tobi_body_energy {
 typedef struct tobi_energy {
     double kinetic, potential;    /* J, of all bodies that move by forces                             */
     double springs;               /* J, in springs of joints, hinges, guides, and in lines            */
-    double motion_power;          /* W, that bodies with a motion give fluids and solids              */
+    double motion_power;          /* W, that motions of bodies give, of swimmers by their shapes       */
     double joint_power;           /* W, that dampers and motors of joints take from the bodies        */
     double line_power;            /* W, that damping of lines takes from them                         */
     double force_power;           /* W, that constant forces and control programs give them           */

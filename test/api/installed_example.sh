@@ -28,6 +28,15 @@ done
 grep "$work/usr/share/tobiuo/scenes/flying_fish/meshes/fish.obj" "$work/check.txt" > /dev/null ||
     { echo "the installed program did not find the installed fish"; exit 1; }
 
+# An installed Python module finds the library.
+if python3 -c 'import cffi, numpy' 2> "$work/python.txt"; then
+    PYTHONPATH=$work/usr/lib/python3/dist-packages python3 -c '
+import tobiuo
+world = tobiuo.World(tobiuo.shipped("dam_break_2d"), set={"spacing": 0.02})
+world.advance(0.05)
+assert world.count() > 0 and tobiuo.shipped().startswith("'"$work"'")'
+fi
+
 # The page's own commands, with an empty home.
 mkdir "$work/home"
 page=docs/c.md

@@ -1,0 +1,91 @@
+"""What a run has written, as arrays."""
+import csv
+import os
+import pathlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from .library import array_of, call, ffi, lib, text_of
+
+
+@dataclass
+class Moment:
+    """One output: time (s), positions (m, n x 3) and fields of the particles, surfaces of bodies: (vertices in
+    m, triangles) by name."""
+    time: float
+    positions: np.ndarray
+    fields: dict
+    surfaces: dict
+
+
+class Results:
+    """The outputs of a run, read when asked for: len(results), results.times, results[-1].
+
+    A run that still goes on can be read; refresh() looks for new outputs.
+    """
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        out = ffi.new("tobi_results **")
+        call(lib.tobi_results_open, os.fspath(folder).encode(), out)
+        self._results = ffi.gc(out[0], lib.tobi_results_free)
+
+    def refresh(self):
+        call(lib.tobi_results_refresh, self._results)
+
+    def __len__(self):
+        return lib.tobi_results_count(self._results)
+
+    @property
+    def times(self):
+        """s"""
+        return np.array([lib.tobi_results_time(self._results, k) for k in range(len(self))])
+
+    def __getitem__(self, output):
+        if not -len(self) <= output < len(self):
+            raise IndexError(f"output {output} of {len(self)}")
+        m = ffi.new("tobi_moment *")
+        call(lib.tobi_results_read, self._results, output % len(self), m)
+        try:
+            fields = {}
+            for k in range(m.field_count):
+                f = m.fields[k]
+                shape = (m.count, f.components) if f.components > 1 else (m.count,)
+                fields[text_of(f.name)] = array_of(f.values, shape)
+            surfaces = {}
+            for k in range(m.surface_count):
+                s = m.surfaces[k]
+                surfaces[text_of(s.name)] = (array_of(s.vertices, (s.vertex_count, 3)),
+                                             array_of(s.triangles, (s.triangle_count, 3), np.int32))
+            return Moment(m.time, array_of(m.positions, (m.count, 3)), fields, surfaces)
+        finally:
+            lib.tobi_moment_free(m)
+
+    def table(self, name="history", of=None):
+        """A table of the run, "history", "bodies", "probes" ...: read_table of its file."""
+        return read_table(self.folder/f"{name}.csv", of)
+
+
+def read_table(path, of=None):
+    """Columns of a CSV file by name: arrays of numbers, lists of texts. of: only the rows of this name, of
+    bodies.csv and solids.csv. The header of history.csv has plain names, others may add "[unit]"."""
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = csv.reader(line for line in file if not line.startswith("#"))
+        head = next(rows, [])
+        rows = [row for row in rows]
+    if of is not None:
+        if "name" not in head:
+            raise ValueError(f"{path}: its rows have no names")
+        names = sorted({row[head.index("name")] for row in rows})
+        if of not in names:
+            raise KeyError(f"{of!r}; {path} has: {', '.join(names)}")
+        rows = [row for row in rows if row[head.index("name")] == of]
+    return {key: _column([row[k] for row in rows]) for k, key in enumerate(head)}
+
+
+def _column(texts):
+    try:
+        return np.array([float(text) for text in texts])
+    except ValueError:
+        return texts

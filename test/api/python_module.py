@@ -1,0 +1,255 @@
+#!/usr/bin/python3
+"""The Python module: runs and states equal those of the program, controllers and motions in Python, what is
+refused, Ctrl-C, results as arrays.
+
+usage: python_module.py PROGRAM MODULE_FOLDER     works in a fresh folder that it removes; 77 without cffi or NumPy
+"""
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+program = os.path.abspath(sys.argv[1])
+sys.path.insert(0, os.path.abspath(sys.argv[2]))
+try:
+    import cffi  # noqa: F401
+    import numpy as np
+except ImportError as problem:
+    print("not there:", problem)
+    sys.exit(77)
+import tobiuo  # noqa: E402
+
+POOL = {
+    "dimension": 2, "domain": {"min": [0, 0], "max": [0.4, 0.3]}, "spacing": 0.01, "end_time": 0.1, "threads": 1,
+    "fluids": [{"name": "water", "fill": [{"box": {"min": [0, 0], "max": [0.4, 0.15]}}]}],
+    "output": {"interval": 0.05}}
+FLOAT = {"name": "float", "box": {"min": [0.16, 0.12], "max": [0.24, 0.18]}, "density": 500, "dynamics": "free"}
+FLAP = {"name": "flap", "box": {"min": [0.1, 0.05], "max": [0.14, 0.2]},
+        "motion": {"translation": {"velocity": [0.1, 0]}}}
+FALL = {"dimension": 3, "domain": {"min": [0, 0, 0], "max": [1, 1, 4]}, "spacing": 0.1, "end_time": 1, "method": "mlsmpm",
+        "time_step_max": 0.01,
+        "bodies": [{"name": "ball", "sphere": {"centre": [0.5, 0.5, 2], "radius": 0.2}, "density": 1000,
+                    "dynamics": "free"}]}
+
+
+def with_bodies(*bodies, **more):
+    return {**POOL, "bodies": list(bodies), **more}
+
+
+class Module(unittest.TestCase):
+    def test_a_run_writes_what_the_program_writes(self):
+        pathlib.Path("pool.json").write_text(json.dumps(with_bodies(FLOAT)), encoding="utf-8")
+        subprocess.run([program, "run", "pool.json", "--out", "mine", "--quiet"], check=True)
+        world = tobiuo.run("pool.json", "theirs")
+        self.assertEqual(world.time, 0.1)
+        for path in sorted(pathlib.Path("mine").rglob("*")):
+            if path.is_file() and path.suffix in (".csv", ".vtu", ".vtp", ".pvd") or path.name == "resolved.json":
+                self.assertEqual(path.read_bytes(), (pathlib.Path("theirs")/path.relative_to("mine")).read_bytes(), path)
+        self.assertEqual(json.loads(pathlib.Path("theirs/summary.json").read_text())["outcome"], "complete")
+        with self.assertRaisesRegex(tobiuo.Error, "theirs"):
+            tobiuo.run("pool.json", "theirs")
+        tobiuo.run("pool.json", "theirs", until=0.05, force=True)
+        self.assertEqual(tobiuo.Results("theirs").times[-1], 0.05)
+
+    def test_results_are_the_world(self):
+        world = tobiuo.run(with_bodies(FLOAT), "results", set={"output.fields": ["velocity", "pressure"]})
+        results = tobiuo.Results("results")
+        self.assertEqual(list(results.times), [0, 0.05, 0.1])
+        last = results[-1]
+        self.assertEqual((last.time, len(results)), (0.1, 3))
+        self.assertEqual(last.positions.shape, (world.count(), 3))
+        np.testing.assert_allclose(last.positions, world.read("position"), atol=1e-7)
+        np.testing.assert_allclose(last.fields["velocity"], world.read("velocity"), atol=1e-6)
+        vertices, triangles = last.surfaces["float"]
+        mine = world.bodies["float"].surface()
+        np.testing.assert_allclose(vertices, mine[0], atol=1e-7)
+        np.testing.assert_array_equal(triangles, mine[1])
+        table = results.table("bodies", of="float")
+        self.assertAlmostEqual(table["position_y"][-1], world.bodies["float"].position[1], 8)
+        self.assertEqual(list(results.table()["time"]), [0, 0.05, 0.1])
+        self.assertEqual(results.table("bodies")["name"], ["float"]*3)
+        with self.assertRaises(IndexError):
+            results[3]
+        with self.assertRaisesRegex(KeyError, "float"):
+            results.table("bodies", of="boat")
+        with self.assertRaisesRegex(ValueError, "no names"):
+            results.table("history", of="boat")
+        with self.assertRaisesRegex(tobiuo.Error, "nowhere"):
+            tobiuo.Results("nowhere")
+
+    def test_a_world_goes_on_from_a_state(self):
+        with tobiuo.World(POOL) as one, tobiuo.World(POOL) as other:
+            one.advance(0.05)
+            one.save("state")
+            other.load("state")
+            self.assertEqual((one.time, one.hash), (other.time, other.hash))
+            for world in (one, other):
+                world.advance(0.1)
+            self.assertEqual(one.hash, other.hash)
+            self.assertGreater(one.info["step"], 1)
+            self.assertEqual(one.info["momentum"].shape, (3,))
+            pathlib.Path("broken").write_text("nothing", encoding="utf-8")
+            with self.assertRaisesRegex(tobiuo.Error, "broken"):
+                one.load("broken")
+            one.step(1e-4)
+
+    def test_particles_are_arrays(self):
+        with tobiuo.World(POOL) as world:
+            self.assertEqual(world.count(), 0)
+            place = world.read("position")
+            self.assertEqual(place.shape, (600, 3))
+            self.assertEqual(world.fields()["velocity"], (3, "m/s"))
+            velocity = np.zeros_like(place)
+            velocity[:, 0] = place[:, 1]
+            world.write("velocity", velocity)
+            np.testing.assert_allclose(world.read("velocity"), velocity, atol=1e-7)
+            self.assertEqual(world.read("pressure").shape, (600,))
+            self.assertEqual(list(world.ids()), list(range(600)))
+            for wrong, text in ((lambda: world.write("velocity", velocity[1:]), "599 rows for 600"),
+                                (lambda: world.read("position", of="air"), "fluid, bodies"),
+                                (lambda: world.set_gravity([1]), "1 numbers")):
+                with self.assertRaisesRegex(ValueError, text):
+                    wrong()
+            with self.assertRaisesRegex(tobiuo.Error, "there is no field 'colour'"):
+                world.read("colour")
+
+    def test_a_controller_in_python_holds_a_ball(self):
+        with tobiuo.World(FALL) as world:
+            ball = world.bodies["ball"]
+            self.assertEqual(list(world.bodies), ["ball"])
+            weight = ball.mass*9.81
+            while world.time < 1:
+                push = weight - 200*(ball.position[2] - 2.2) - 0.5*ball.mass**0.5*40*ball.velocity[2]
+                ball.set_force([0, 0, push])
+                world.step(0.01)
+            self.assertAlmostEqual(ball.position[2], 2.2, 1)
+            self.assertGreater(ball.position[2], 2.1)
+            self.assertEqual(ball.inertia.shape, (3, 3))
+            self.assertEqual(set(ball.energy()), {"kinetic", "potential", "power", "contact_power", "motion_power"})
+            with self.assertRaisesRegex(AttributeError, "position, orientation"):
+                ball.colour
+            with self.assertRaisesRegex(KeyError, "there are: ball"):
+                world.bodies["bat"]
+
+    def test_gravity_turns(self):
+        with tobiuo.World(FALL) as world:
+            world.set_gravity([0, 0, 5])
+            world.advance(0.1)
+            self.assertAlmostEqual(world.bodies["ball"].velocity[2], 0.5, 6)
+            self.assertAlmostEqual(world.energy()["kinetic"], world.bodies["ball"].energy()["kinetic"], 9)
+
+    def test_a_motion_in_python_is_the_motion_of_the_scene(self):
+        hashes = []
+        for mine in (False, True):
+            with tobiuo.World(with_bodies(FLAP)) as world:
+                if mine:
+                    world.bodies["flap"].set_motion(lambda t, rest: rest + t*np.array([0.1, 0, 0]))
+                world.advance(0.1)
+                hashes.append(world.hash)
+        self.assertEqual(hashes[0], hashes[1])
+
+    def test_what_a_motion_raises_comes_out(self):
+        with tobiuo.World(with_bodies(FLAP)) as world:
+            world.bodies["flap"].set_motion(lambda t, rest: rest + t*np.array([0.1, 0, 0]) if t < 0.05 else 1/0)
+            with self.assertRaises(ZeroDivisionError):
+                world.advance(0.1)
+            world.bodies["flap"].set_motion(lambda t, rest: rest + t*np.array([0.1, 0, 0]))
+            world.advance(0.1)
+            with self.assertRaisesRegex(ValueError, "answered an array"):
+                world.bodies["flap"].set_motion(lambda t, rest: rest[1:])
+                world.step()
+
+    def test_control_c_stops_between_two_steps(self):
+        with tobiuo.World(POOL) as world, tobiuo.World(POOL) as other:
+            world.start()
+            signal.setitimer(signal.ITIMER_REAL, 0.05)
+            signal.signal(signal.SIGALRM, signal.default_int_handler)
+            with self.assertRaises(KeyboardInterrupt):
+                world.advance(1000)
+            until = world.time + 0.01
+            self.assertLess(until, 1000)
+            world.advance(until)
+            self.assertEqual(world.time, until)
+            other.advance(0.01)
+
+    def test_each_step_may_end_a_run(self):
+        seen = []
+        world = tobiuo.run(POOL, "ended", each_step=lambda w: seen.append(w.time) or w.time < 0.03)
+        self.assertEqual(seen[-1], world.time)
+        self.assertLess(world.time, 0.1)
+        self.assertEqual(tobiuo.Results("ended").times[-1], world.time)
+
+        def break_down(world):
+            if world.time > 0.02:
+                raise OSError("the controller has lost its link")
+        with self.assertRaisesRegex(OSError, "its link"):
+            tobiuo.run(POOL, "broken_down", each_step=break_down)
+        subprocess.run([program, "resume", "broken_down", "--quiet"], check=True)
+        self.assertEqual(tobiuo.Results("broken_down").times[-1], 0.1)
+
+    def test_joints_lines_probes_solids(self):
+        scene = with_bodies(FLOAT, probes=[{"name": "gauge", "kind": "level", "position": [0.3, 0.1]}],
+                            lines=[{"name": "chain", "kind": "rope", "body": "float", "point": [0.2, 0.12],
+                                    "to": [0.2, 0.02], "length": 0.05, "stiffness": 100}])
+        with tobiuo.World(scene) as world:
+            world.advance(0.02)
+            self.assertAlmostEqual(world.probes["gauge"]["level"], 0.15, 1)
+            self.assertGreater(world.lines["chain"]["tension"], 1)
+            self.assertEqual((len(world.joints), len(world.solids)), (0, 0))
+            with self.assertRaisesRegex(KeyError, "there are: none"):
+                world.joints["hinge"]
+        with tobiuo.World({**POOL, "method": "mlsmpm", "fluids": [], "solids": [
+                {"name": "jelly", "density": 900, "fill": [{"box": {"min": [0.1, 0.1], "max": [0.2, 0.2]}}]}]}) as world:
+            world.start()
+            self.assertAlmostEqual(world.solids["jelly"]["mass"], 9, 6)
+            self.assertEqual([piece["particles"] for piece in world.pieces()], [world.count()])
+
+    def test_mistakes_of_scenes_are_told(self):
+        lines = tobiuo.check({**POOL, "spacing": -1, "fluids": [{"name": "water", "fill": [], "colour": 1}]})
+        self.assertTrue(any("spacing: is -1" in line for line in lines) and any("colour" in line for line in lines))
+        self.assertEqual(tobiuo.check(POOL), [])
+        self.assertIn("none.json", tobiuo.check("none.json")[0])
+        with self.assertRaisesRegex(tobiuo.Error, "spacing: is the text") as caught:
+            tobiuo.World(POOL, set="spacing=thick")
+        self.assertEqual(caught.exception.status, "invalid input")
+        with self.assertRaisesRegex(tobiuo.Error, "nothing.obj"):
+            tobiuo.World(with_bodies({"name": "boat", "mesh": "nothing.obj"}))
+        self.assertIn("spacing", tobiuo.describe("spacing"))
+        self.assertIsNone(tobiuo.describe("no such word"))
+        self.assertTrue(os.path.exists(tobiuo.shipped("dam_break_2d/scene.json")))
+
+    def test_examples_of_the_page_run(self):
+        root = pathlib.Path(__file__).resolve().parents[2]
+        for name in ("scenes", "test"):
+            os.symlink(root/name, name)
+        pages = [(root/f"docs/python{part}.md").read_text(encoding="utf-8") for part in ("", ".ja")]
+        codes = [re.findall(r"^```python\n(.*?)^```$", page, re.M | re.S) for page in pages]
+        self.assertEqual(len(codes[0]), 3)
+        without_comments = [[re.sub(r" +#.*", "", code) for code in page] for page in codes]
+        self.assertEqual(*without_comments)
+        for code in codes[0]:
+            out = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True,
+                                 env={**os.environ, "PYTHONPATH": sys.path[0]}).stdout
+            print(out, end="")
+            self.assertRegex(out, "[0-9]")
+
+    def test_a_closed_world_says_so(self):
+        world = tobiuo.World(tobiuo.shipped("dam_break_2d"), set={"spacing": 0.02})
+        self.assertIn("t = 0 s", repr(world))
+        world.close()
+        world.close()
+        self.assertEqual(repr(world), "<tobiuo.World, closed>")
+        for use in (lambda: world.time, world.step, lambda: world.bodies, lambda: world.info, world.count):
+            with self.assertRaisesRegex(tobiuo.Error, "closed"):
+                use()
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        unittest.main(argv=sys.argv[:1])
