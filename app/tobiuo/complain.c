@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 int complain(const char *format, ...)
 {
@@ -34,6 +35,12 @@ int complain_scene(tobi_report *report, const tobi_error *err)
 
 int complain_run(const char *dir, const char *what)
 {
+    char *sweep = join_path(dir, "sweep.csv");
+    const int is_sweep = access(sweep, F_OK) == 0;
+    free(sweep);
+    if (is_sweep)
+        return complain("%s is a sweep: its runs are the folders in it, sweep.txt and sweep.svg compare them",
+                        dir);
     char *near = near_run(dir);
     complain("%s: %s%s%s%s", dir, what, near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
     free(near);

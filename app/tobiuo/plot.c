@@ -277,8 +277,8 @@ static int add_reference(picture *p, const tobi_reference_def *def)
         curve *c = add_curve(a, reference_label(def), t.rows);
         code = c ? 0 : complain("out of memory");
         for (size_t i = 0; c && i < t.rows; i++) {
-            c->x[c->count] = def->x_scale*table_number(&t, i, x);
-            c->y[c->count++] = def->y_scale*table_number(&t, i, y);
+            c->x[c->count] = def->x_offset + def->x_scale*table_number(&t, i, x);
+            c->y[c->count++] = def->y_offset + def->y_scale*table_number(&t, i, y);
         }
         if (c) {
             c->style = CURVE_POINTS;

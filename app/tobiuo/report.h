@@ -30,6 +30,8 @@ const json_t *report_value(const report *r, const char *path);
 /* report_tables.c: each column's last, mean and extreme values; where the time went. */
 void write_tables(const report *r);
 void write_times(const report *r);
+/* report_waves.c: height and period of the waves at level sensors. */
+void write_waves(const report *r);
 /* report_trust.c */
 void write_trust(const report *r);
 

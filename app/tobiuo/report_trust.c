@@ -211,6 +211,34 @@ static double corner(const json_t *box, const char *key, size_t a)
     return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
+/* A gate that is drawn up, or taken away, lets a front go. */
+static int stays_down(const report *r, int b)
+{
+    const table *t = &r->bodies;
+    const json_t *absent = json_object_get(json_array_get(report_value(r, "bodies"), (size_t)b), "absent");
+    const int name = table_column(t, "name");
+    const int up = table_column(t, r->dimension == 2 ? "position_y" : "position_z");
+    double low = INFINITY, high = -INFINITY;
+    if (json_is_number(json_object_get(absent, "from"))) return 0;
+    for (size_t i = 0; name >= 0 && up >= 0 && i < t->rows; i++) {
+        const double at = table_number(t, i, up);
+        const char *body = t->cells[i*(size_t)t->columns + (size_t)name];
+        if (strcmp(body, tobi_world_body_name(r->world, b)) != 0) continue;
+        low = fmin(low, at), high = fmax(high, at);
+    }
+    return high - low < r->spacing;
+}
+
+/* Whether a piston or a wall ends the liquid there, along axis a. */
+static int is_closed(const report *r, int a, double at)
+{
+    widths w;
+    for (int b = 0; r->world && b < tobi_world_body_count(r->world); b++)
+        if (measure_widths(r->world, b, r->dimension, &w) == 0 && fills_section(r, &w) && stays_down(r, b) &&
+            (fabs(w.low[a] - at) < 2*r->spacing || fabs(w.high[a] - at) < 2*r->spacing)) return 1;
+    return 0;
+}
+
 /* What boxes of fluid leave free beside them, over both sides of the horizontal axes. */
 typedef struct gaps { int begins_beside, stands_free; } gaps;
 
@@ -227,7 +255,8 @@ static gaps look_at_fills(const report *r)
                              high = corner(domain, "max", a) - corner(box, "max", a);
                 const double tiny = 0.01*r->spacing;
                 g.begins_beside |= (low > tiny && low <= r->spacing) || (high > tiny && high <= r->spacing);
-                g.stands_free |= low > 2*r->spacing || high > 2*r->spacing;
+                g.stands_free |= low > 2*r->spacing && !is_closed(r, (int)a, corner(box, "min", a));
+                g.stands_free |= high > 2*r->spacing && !is_closed(r, (int)a, corner(box, "max", a));
             }
     return g;
 }

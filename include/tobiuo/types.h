@@ -438,6 +438,7 @@ typedef struct tobi_reference_def {
     const char *x;                /* column of file with the times                                   */
     const char *y;                /* column of file with the values; NULL = named like column        */
     double x_scale, y_scale;      /* factors that turn x into s and y into the unit of column        */
+    double x_offset, y_offset;    /* s, unit of column: added after that                             */
     const char *label;            /* name in pictures; NULL = the file's                             */
 } tobi_reference_def;
 

@@ -24,7 +24,7 @@ static void check_column(tobi_source *source, const tobi_place *entry, tobi_tabl
         [TOBI_TABLE_LEVEL] = "a level of probes.csv", [TOBI_TABLE_PATCH] = "a patch of probes.csv",
         [TOBI_TABLE_RUN_UP] = "a run-up of probes.csv", [TOBI_TABLE_FLOW] = "a flow of probes.csv",
         [TOBI_TABLE_VOLUME] = "a volume of probes.csv", [TOBI_TABLE_SOLIDS] = "solids.csv" };
-    enum { COLUMNS = 64 };
+    enum { COLUMNS = 128 };
     const char *names[COLUMNS];
     char near[200];
     int count = 0;
@@ -56,6 +56,27 @@ static int find_owner(const tobi_scene *scene, tobi_source *source, const tobi_p
     return -1;
 }
 
+/* A column as probes.csv has it, such as "G1_level": 1 after telling its two keys. */
+static int check_prefix(const tobi_scene *scene, tobi_source *source, const tobi_place *entry,
+                        const char *column)
+{
+    tobi_place place = { entry, "column", 0 };
+    const tobi_column *c;
+    for (int i = 0; i < scene->probe_count; i++) {
+        const char *name = scene->probes[i].name;
+        const size_t length = name ? strlen(name) : 0;
+        if (length == 0 || strncmp(column, name, length) != 0 || column[length] != '_') continue;
+        const tobi_table table = (tobi_table)(TOBI_TABLE_POINT + scene->probes[i].kind);
+        for (int k = 0; (c = tobi_run_column(table, k)); k++) {
+            if (strcmp(column + length + 1, c->name) != 0) continue;
+            tobi_source_mistake(source, &place, "\"%s\" is of a probe: write \"probe\": \"%s\", "
+                                "\"column\": \"%s\"", column, name, c->name);
+            return 1;
+        }
+    }
+    return 0;
+}
+
 static void check_owner(const tobi_scene *scene, tobi_source *source, const tobi_place *entry,
                         const tobi_reference_def *def)
 {
@@ -68,6 +89,7 @@ static void check_owner(const tobi_scene *scene, tobi_source *source, const tobi
         if (probe < 0) return;
         table = (tobi_table)(TOBI_TABLE_POINT + scene->probes[probe].kind);
     }
+    if (def->column && table == TOBI_TABLE_HISTORY && check_prefix(scene, source, entry, def->column)) return;
     if (def->column) check_column(source, entry, table, def->column);
 }
 

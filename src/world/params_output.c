@@ -176,6 +176,11 @@ static const tobi_param reference_rows[] = {
       .doc = "Factor that turns x into seconds of the run." },
     { .key = "y_scale", REAL, AT(tobi_reference_def, y_scale), .def = { 1 }, RANGE(-1e30, 1e30), .unit = "1",
       .doc = "Factor that turns y into the unit of column." },
+    { .key = "x_offset", REAL, AT(tobi_reference_def, x_offset), RANGE(-1e30, 1e30), .unit = "s",
+      .doc = "Added to x after x_scale: the time of the run at which the file's clock begins." },
+    { .key = "y_offset", REAL, AT(tobi_reference_def, y_offset), RANGE(-1e30, 1e30), .unit = "1",
+      .doc = "Added to y after y_scale, in the unit of column: the height of the still water for a gauge "
+             "that measures from it." },
     { .key = "label", TEXT, AT(tobi_reference_def, label), .unit = "text",
       .doc = "Name in the picture, such as the publication; without it the name of the file." },
     { 0 }

@@ -72,6 +72,8 @@ cat > tank.json <<'END'
 END
 expect 0 "" check tank.json
 expect 1 'did you mean "wall_force_z"?' check tank.json --set 'references[1].column=wal_force_z'
+expect 1 '"H_level" is of a probe: write "probe": "H", "column": "level"' check tank.json \
+    --set 'references[1].column=H_level'
 expect 1 "one of bodies.csv or probes.csv needs body" check tank.json --set 'references[1].column=position_x'
 expect 1 'there is no body "fish"' check tank.json --set 'references[3].body=fish'
 expect 1 'there is no probe "P2"' check tank.json --set 'references[0].probe=P2'
@@ -136,6 +138,10 @@ check "motions are shifts" has plane/plots/b_motion.svg "shift since the start, 
 sed 's/"y_scale": -20}/"y_scale": -20, "label": "later"}/' tank.json > later.json
 expect 0 "" plot tank --scene later.json
 check "references may come later" has "tank/plots/compare_P 1_pressure.svg" "later"
+check "without an offset" grep -q "^0.01 700$" tank/plots/plots.gnuplot
+sed -i 's/"label": "later"/"x_offset": 0.005, "y_offset": 100/' later.json
+expect 0 "" plot tank --scene later.json
+check "offsets are added after the factors" grep -q "^0.015 800$" tank/plots/plots.gnuplot
 expect 1 "nowhere.json" plot tank --scene nowhere.json
 sed 's/measured/forgotten/' later.json > wrong.json
 expect 1 "wrong.json:" plot tank --scene wrong.json

@@ -76,6 +76,43 @@ sweep=(sweep tank.json --set cfl=0.3 --until 0.02 --out sweep)
 touch good.obj && mv good.obj box.obj
 expect 1 "box.obj has changed since sweep/run read it; choose another --out, or remove that folder" "${sweep[@]}"
 
+expect 1 "sweep is a sweep: its runs are the folders in it" report sweep
+expect 1 "sweep is a sweep: its runs are the folders in it" plot sweep
+
+# --- waves, of a table that is written here: 40 mm high, then 80 mm, each 1.25 s long, with ripples of 1 mm ---
+cat > flume.json <<'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [3, 0.6] }, "spacing": 0.05, "end_time": 0.02, "method": "isph",
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0.5, 0], "max": [3, 0.3] } } ] } ],
+  "bodies": [ { "name": "paddle", "box": { "min": [0.3, 0], "max": [0.5, 0.6] } } ],
+  "probes": [ { "name": "A", "kind": "level", "position": [1, 0] }, { "name": "B", "kind": "level", "position": [2, 0] } ],
+  "output": { "interval": 0.01 } }
+END
+expect 0 "" run flume.json --out flume --quiet
+$python - <<'END'
+from math import cos, pi, sin
+with open("flume/probes.csv", "w") as out:
+    print("time [s],A_level [m],B_level [m]", file=out)
+    for k in range(1001):
+        t = 0.01*k
+        high = 0.02 if t < 5 else 0.04
+        print(t, 0.3 - high*sin(2*pi*t/1.25) + 0.0005*cos(200*t), 0.3 + 0.001*sin(9*t), sep=",", file=out)
+rows = open("flume/history.csv").read().split("\n")
+rows[-2] = "10" + rows[-2][rows[-2].index(","):]
+open("flume/history.csv", "w").write("\n".join(rows))
+END
+PATH=/nonexistent "$program" report flume > out.txt 2> err.txt
+row() { sed -n 's/^<tr><td>'"$2"'<td>//p' "$1" | sed 's/<td class=doc>//; s/<td>/ /g' | tail -1; }
+near() { $python -c 'import sys; a, b = ([float(x) for x in t.split()] for t in sys.argv[1:3])
+sys.exit(len(a) != len(b) or any(abs(x - y) > 0.03*y for x, y in zip(a, b)))' "$1" "$2"; }
+check "number, period and heights of waves" near "$(row flume/report.html A)" "7 1.25 0.061 0.081 0.081 0.041"
+check "rest is no wave" test -z "$(row flume/report.html B)"
+PATH=/nonexistent "$program" report flume --from 5 --out later.html > out.txt 2> err.txt
+check "of the time from 5 s on" near "$(row later.html A)" "3 1.25 0.081 0.081 0.081 0.081"
+check "a paddle that closes the section lets no front go" test "$(grep -c 'beside free floor' flume/report.html)" = 0
+sed -i '/^[0-9.]*,paddle/{$!s/,paddle,[^,]*,[^,]*/,paddle,0.4,0.5/}' flume/bodies.csv
+PATH=/nonexistent "$program" report flume --force > out.txt 2> err.txt
+check "one that is drawn up does" says flume/report.html "Water stands beside free floor"
+
 # --- without other programs -------------------------------------------------------------------------
 expect 2 "which DIR?" report
 expect 2 "--out is empty" report x --out=

@@ -132,7 +132,7 @@ def full_scene(library):
     pathlib.Path("full/flow.lua").write_text("function velocity(x, y, z) return 0, 0, 0 end\n")
     scene["fluids"][0]["fill"][0]["flow"] = {"script": "flow.lua", "params": {"any": 1}}
     scene["probes"] = [{"name": "gauge", "kind": "level", "position": [0.1, 0.05, 0.1]}]
-    rest = {"file": "box.obj", "x": "t [s]", "y": "F/m, g", "x_scale": 0.001, "y_scale": -1, "label": "a, b"}
+    rest = {"file": "box.obj", "x": "t [s]", "y": "F/m, g", "x_scale": 0.001, "y_scale": -1, "x_offset": 0.5, "y_offset": 1, "label": "a, b"}
     scene["references"] = [{"body": "body0", "column": "position_x", **rest},
                            {"probe": "gauge", "column": "level", **rest}]
     scene["$schema"] = "scene.schema.json"
