@@ -15,7 +15,7 @@ enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_UNWRITTEN = 3, EXIT_INTERRUPTED = 13
 /* The commands. Their options are tables, for argp, the man page and the completion of words alike. */
 extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp, view_argp,
                          report_argp, describe_argp, bench_argp, info_argp, scenes_argp, new_argp,
-                         inspect_argp, surface_argp, foam_argp, picture_argp, sweep_argp;
+                         inspect_argp, surface_argp, foam_argp, picture_argp, sweep_argp, waves_argp;
 int tobiuo_run(int argc, char **argv);
 int tobiuo_resume(int argc, char **argv);
 int tobiuo_plot(int argc, char **argv);
@@ -34,6 +34,7 @@ int tobiuo_info(int argc, char **argv);
 int tobiuo_scenes(int argc, char **argv);
 int tobiuo_new(int argc, char **argv);
 int tobiuo_sweep(int argc, char **argv);
+int tobiuo_waves(int argc, char **argv);
 
 typedef struct command {
     const char *name, *arguments, *doc;

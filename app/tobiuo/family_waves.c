@@ -131,7 +131,7 @@ static void put_gauges(const family_choice *c, FILE *out, const plan *p, const d
     const int regular = chosen(c, "period") > 0;
     fprintf(out, "  // Sensors of the level, m above the floor, in probes.csv%s\n  \"probes\": [",
             regular ? ". G2 and G3 stand 1/10 and 1/4\n  // of a wave length behind G1: such a row tells "
-            "waves that come back (Mansard and Funke 1980)." : "; wall: pressure, Pa.");
+            "waves that come back:\n  // tobiuo waves DIR --gauges G1,G2,G3" : "; wall: pressure, Pa.");
     for (int k = 0; k < 3; k++) {
         const double x = regular ? at + room/2 + apart[k]*fmin(p->length, room) : at + (k + 1)*room/4;
         char name[16];

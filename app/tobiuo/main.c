@@ -22,6 +22,8 @@ static const command commands[] = {
     { "import", "SCENE", "translate a scene of the Taichi or the tank program into a native one",
       tobiuo_import, &import_argp },
     { "plot", "DIR", "draw the tables of a run as pictures", tobiuo_plot, &plot_argp },
+    { "waves", "DIR", "significant heights, spectra and reflection of the waves at the gauges of a run",
+      tobiuo_waves, &waves_argp },
     { "movie", "DIR", "make a movie of the pictures of a run", tobiuo_movie, &movie_argp },
     { "view", "DIR", "look at the results of a run in a window", tobiuo_view, &view_argp },
     { "picture", "DIR", "draw a picture of an output of a run", tobiuo_picture, &picture_argp },

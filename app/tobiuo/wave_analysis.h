@@ -1,0 +1,43 @@
+/* Waves at gauges: heights, periods, spectra; and of a group of gauges the waves that go on and those that
+   come back. Records are evenly spaced in time and about their mean. */
+#pragma once
+#include <stddef.h>
+
+typedef struct wave_gauge {
+    const char *name;               /* borrowed                                                  */
+    int    column;                  /* of the caller's table                                     */
+    double place[3];                /* m                                                         */
+    double *eta;                    /* owned, m: level less its mean and trend                   */
+    double mean;                    /* m, of the level                                           */
+    double height_m0;               /* m: 4 standard deviations                                  */
+    double height_third, height_max;        /* m, between crossings upwards of the mean; NaN: fewer than 3 */
+    double peak_period, mean_period, energy_period;     /* s: of the spectrum, of the crossings, m-1/m0   */
+    int    waves;                   /* whole ones                                                */
+    double *density;                /* owned, m2/Hz, of wave_set.bins frequencies                */
+} wave_gauge;
+
+/* All gauges of a run in one span of time, which holds whole periods of the highest peak. */
+typedef struct wave_set {
+    wave_gauge *gauge;              /* owned                                                     */
+    int    gauges;
+    size_t count, bins;             /* values of a record; frequencies k/(count*step), k from 1  */
+    double begin, step;             /* s                                                         */
+    double peak;                    /* Hz, of all gauges together                                */
+    double gravity, depth;          /* m/s2, m                                                   */
+} wave_set;
+
+/* What goes on from the first gauge towards the last, and what comes back. */
+typedef struct wave_group {
+    double forward, back;           /* m: 4 standard deviations; what is not resolved is shared alike */
+    double resolved;                /* share of the variance that the gauges can tell apart      */
+} wave_group;
+
+/* Cuts the start of the records to whole periods, takes mean and trend out, and measures each gauge. eta
+   holds levels before. -1: no memory; 1: there is less than one wave. */
+int wave_measure(wave_set *s);
+/* Least squares at each frequency (Mansard & Funke 1980, Zelt & Skjelbreia 1992; of two gauges Goda & Suzuki
+   1976). at: ways of the gauges along the waves, m. 1: the gauges tell waves of no frequency apart. */
+int wave_split(const wave_set *s, const int *gauges, const double *at, int count, wave_group *out);
+/* The length, m, of long-crested waves of a frequency, Hz. */
+double wave_length(double frequency, double depth, double gravity);
+void wave_set_free(wave_set *s);
