@@ -94,7 +94,8 @@ const char *object_wave(const family_choice *c)
 static void put_piston(const family_choice *c, FILE *out, const plan *p, const double size[3])
 {
     const double at = chosen(c, "maker-at"), height = chosen(c, "wave-height"), depth = chosen(c, "depth");
-    const double back[3] = { at - 4*chosen(c, "spacing"), 0, 0 }, face[3] = { at, size[1], size[2] };
+    const double back[3] = { at - fmin(4*chosen(c, "spacing"), at/2), 0, 0 };
+    const double face[3] = { at, size[1], size[2] };
     const int second = height*p->length*p->length <= MADSEN*depth*depth*depth;
     fputs("  \"bodies\": [\n    { \"name\": \"piston\", \"box\": { ", out);
     put_corners(c, out, back, face);

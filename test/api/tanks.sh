@@ -77,7 +77,7 @@ sys.exit(not (0.9*60 < min(h) and max(h) < 1.1*60 and max(h) - min(h) < 0.06*60)
 check "the beach takes them" python3 -c 'import sys; sys.exit(not float(sys.argv[1]) < 0.5*60)' "$(height "end_level [m]" 9)"
 expect 0 "" new wave_tank --dimension 2 --period 2.5 --wave-height 0.1 long_waves
 check "long waves by the first order" grep -q '"order": 1' long_waves/scene.json
-expect 0 "" new wave_tank --beach 0 --length 4 walled
+expect 0 "" new wave_tank --beach 0 --length 4 --spacing 0.1 walled
 check "a tank without a beach" test "$(grep -c damping_zones walled/scene.json)" = 0
 # The far end goes down first in both dimensions: the water rises there.
 for dimension in 2 3; do
