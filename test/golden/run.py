@@ -13,7 +13,7 @@ multiply-add, where the C library computes sines and powers in another way. --ev
 are older than a scene do not know it.
 A commit that changes the table says why. Prints one line per difference; exits 1 if there was one.
 """
-import argparse, concurrent.futures, csv, hashlib, json, os, pathlib, shutil, subprocess, sys
+import argparse, concurrent.futures, csv, hashlib, json, os, pathlib, shutil, subprocess, sys, tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 TABLE = HERE / "hashes.csv"
@@ -46,11 +46,10 @@ def hash_files(folder):
     return total.hexdigest()[:16]
 
 
-def run(program, scene, variant, times=()):
+def run(work, program, scene, variant, times=()):
     """Hashes and times of outputs; those are needed for two parts."""
     name, env, threads, parts = variant
-    out = pathlib.Path(scene.stem + "-" + name.replace(" ", "_").replace(",", ""))
-    shutil.rmtree(out, ignore_errors=True)
+    out = work/(scene.stem + "-" + name.replace(" ", "_").replace(",", ""))
     always = [str(scene), "--quiet", "--threads", str(threads), "--out", str(out), "--set", "output.compression=none"]
     call(program, env, "run", *always, *(["--until", times[1]] if parts else []))
     if parts:
@@ -106,11 +105,12 @@ def main():
     table, found, faults = {} if options.write else read_table(), {}, []
     if not options.scenes:
         faults += [f"{name}: there is no such scene" for name in table if name not in {s.stem for s in scenes}]
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
+        work = pathlib.Path(folder)
         for scene in scenes:
             names = list(variants(options.every))
-            first, times = run(program, scene, names[0])
-            others = pool.map(lambda v, s=scene, t=times: run(program, s, v, t)[0], names[1:])
+            first, times = run(work, program, scene, names[0])
+            others = pool.map(lambda v, s=scene, t=times: run(work, program, s, v, t)[0], names[1:])
             results = list(zip([v[0] for v in names], [first, *others]))
             found[scene.stem] = results[0][1]
             faults += compare(scene, found[scene.stem] if options.write else table.get(scene.stem), results)
