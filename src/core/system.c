@@ -175,8 +175,9 @@ double tobi_system_pushed_speed(const tobi_system *s)
     return fmin(narrow_speed(s, flow, fastest), sqrt(2*head/least));
 }
 
-/* Spacings in a step: what moves less is at rest but for rounding, though nothing drives it. */
-static const double STILL = 1e-6;
+/* Spacings in a step: what moves less is no runaway, though nothing seems to drive it. Motors, springs and
+   programs move bodies within the step, whose speed is known at its end. */
+static const double STILL = 0.1;
 
 /* m2/s2 */
 static double fall_head(const tobi_system *s)

@@ -9,7 +9,7 @@
 
 static tobi_world *start(const char *method, double height, const char *more)
 {
-    char text[1000];
+    char text[1400];
     tobi_world *world;
     tobi_error err = { 0 };
     snprintf(text, sizeof text, "{ \"method\": \"%s\", \"dimension\": 2, \"gravity\": [0, 0], "
@@ -56,11 +56,32 @@ static void water_swings_on_when_a_body_turns(void **state)
     }
 }
 
+/* The speed of bodies is known when their step begins: then those of a motor rest still. */
+static void a_motor_starts_in_water_at_rest(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        tobi_error err = { 0 };
+        tobi_world *world = start(methods[k], 0.3, "\"bodies\": [ { \"name\": \"head\", "
+            "\"dynamics\": \"free\", \"box\": { \"min\": [0.1, 0.12], \"max\": [0.18, 0.18] } }, "
+            "{ \"name\": \"tail\", \"dynamics\": \"free\", "
+            "\"box\": { \"min\": [0.18, 0.12], \"max\": [0.26, 0.18] } } ], \"joints\": [ { "
+            "\"name\": \"neck\", \"body\": \"tail\", \"to_body\": \"head\", \"point\": [0.18, 0.15], "
+            "\"motor\": { \"angle\": 0, \"amplitude\": 20, \"period\": 0.5, \"ramp\": 0.5 } } ], ");
+        tobi_step_info info = { 0 };
+        if (tobi_world_advance(world, 0.3, &info, &err) != TOBI_OK) fail_msg("%s: %s", methods[k], err.text);
+        print_message("%s: %g m/s, %g J\n", methods[k], info.speed_max, info.kinetic_energy);
+        assert_true(info.speed_max > 0.02 && info.speed_max < 1);
+        tobi_world_destroy(world);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(liquid_that_nothing_drives_rests),
         cmocka_unit_test(water_swings_on_when_a_body_turns),
+        cmocka_unit_test(a_motor_starts_in_water_at_rest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
