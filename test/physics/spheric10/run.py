@@ -13,7 +13,9 @@ A tank 900 mm long and 508 mm high holds 93 mm of water and rolls by 4 degrees a
 four peaks of its pressure over 100 repeats, mean and standard deviation, 37.1 (7.3), 48.2 (15.0), 46.9 (17.1) and 46.4 (13.2)
 mbar (SPHERIC test 10, water, 62 mm wide; E. Botia-Vera, A. Souto-Iglesias, G. Bulian, L. Lobovsky, 5th SPHERIC workshop, 2010, for the
 first; the others from the benchmark's table of repeats). The measured history of pressure and the recorded roll are not at hand:
-here the roll rises in a fifth of a period, and times of impacts are compared with one another only. Air is not computed.""",
+here the roll rises in a fifth of a period, and times of impacts are compared with one another only. Air is computed where a
+row says so, as a second fluid of 1.2 kg/m3 and 1.8e-5 Pa s, until after the first impact, by isph, which knows such ratios of
+densities. Without it a cavity that the wave encloses at the wall closes at once, and the pressure is a blow of one or two steps.""",
             methods=("isph", "wcsph"))
 
 LENGTH, HEIGHT, DEPTH, ROLL, PERIOD = 0.9, 0.508, 0.093, 4.0, 1.63
@@ -40,19 +42,26 @@ def short_mean(times, pressure):
     return max(mean(pressure[i - 2:i + 3]) for i, t in enumerate(times) if PERIOD <= t < 2*PERIOD)
 
 
-def roll(layers):
-    content = {"dimension": 2, "domain": {"min": [0, 0], "max": [LENGTH, HEIGHT]}, "spacing": DEPTH/layers, "end_time": END,
+def write_tank(layers, end):
+    return {"dimension": 2, "domain": {"min": [0, 0], "max": [LENGTH, HEIGHT]}, "spacing": DEPTH/layers, "end_time": end,
                "fluids": [{"name": "water", "density": 998, "viscosity": 8.94e-4, "fill": [{"box": {"min": [0, 0], "max": [LENGTH, DEPTH]}}]}],
                "frame": {"yaw": {"amplitude": ROLL, "period": PERIOD, "ramp": PERIOD/5, "centre": [LENGTH/2, 0]}},
                "probes": [{"name": "left", "position": [0, DEPTH]}, {"name": "right", "position": [LENGTH, DEPTH]}],
-               "output": {"interval": PERIOD/6, "probe_interval": 0.001, "fields": ["velocity"], "surfaces": False}}
+               "output": {"interval": PERIOD/6, "probe_interval": 0.001, "fields": ["velocity", "material"], "surfaces": False}}
+
+
+def compare(name, peak, middle, spread, number):
+    case.figure(f"{name}: peak {number} over the mean of the repeats, {middle} mbar", peak/middle,
+                f"{1 - 2*spread/middle:.2f} to {1 + 2*spread/middle:.2f}, two deviations", abs(peak - middle) <= 2*spread)
+
+
+def roll(layers):
+    content = write_tank(layers, END)
     label, name = f"h_{layers}", f"h/{layers}"
     table = read_table(case.run(label, scene=case.write_scene(label, content)) / "probes.csv")
     found = impacts(table["time"], table["left_pressure"])
     for k, ((t, p), (middle, spread)) in enumerate(zip(found, PEAKS)):
-        peak = p/BAR*1000
-        case.figure(f"{name}: peak {k + 1} over the mean of the repeats, {middle} mbar", peak/middle,
-                    f"{1 - 2*spread/middle:.2f} to {1 + 2*spread/middle:.2f}, two deviations", abs(peak - middle) <= 2*spread)
+        compare(name, p/BAR*1000, middle, spread, k + 1)
     case.state(f"{name}: time of the first impact over the period", found[0][0]/PERIOD)
     case.state(f"{name}: largest mean over 5 ms of the first peak, mbar", short_mean(table["time"], table["left_pressure"])/BAR*1000)
     steps = [(b[0] - a[0])/PERIOD for a, b in zip(found, found[1:])]
@@ -65,11 +74,32 @@ def roll(layers):
               all(10 <= p/BAR*1000 <= 300 for _, p in found) and all(abs(s - 1) < 0.05 for s in steps))
 
 
+def roll_with_air(layers):
+    content = write_tank(layers, 1.6*PERIOD)
+    content["fluids"].append({"name": "air", "density": 1.2, "viscosity": 1.8e-5, "visible": False,
+                              "fill": [{"box": {"min": [0, DEPTH], "max": [LENGTH, HEIGHT]}}]})
+    label, name = f"air_{layers}", f"with air, h/{layers}"
+    table = read_table(case.run(label, scene=case.write_scene(label, content)) / "probes.csv")
+    times, pressure = table["time"], table["left_pressure"]
+    top = max((i for i, t in enumerate(times) if t >= PERIOD), key=lambda i: pressure[i])
+    compare(name, pressure[top]/BAR*1000, *PEAKS[0], 1)
+    case.state(f"{name}: time of the first impact over the period", times[top]/PERIOD)
+    around = [pressure[i] for i in range(top - 5, top + 6)]
+    case.figure(f"{name}: largest change in 1 ms beside the peak, over it", max(abs(b - a) for a, b in zip(around, around[1:]))/pressure[top],
+                "<= 0.5", max(abs(b - a) for a, b in zip(around, around[1:])) <= 0.5*pressure[top])
+    # Without air a blow of 75 to 260 mbar; the wave alone makes 10.
+    case.hold(f"{name}: an impact of 12 to 60 mbar", 12 <= pressure[top]/BAR*1000 <= 60)
+    curves.append((name, times, [p/BAR*1000 for p in pressure], False))
+
+
 END = 5.2*PERIOD
 curves = []
 case.state("period of roll over that of the first mode by linear theory", PERIOD/first_mode())
 for layers in case.pick((8,), (12, 20)):
     roll(layers)
+if case.args.method == "isph":
+    for layers in case.pick((8,), (12, 20, 30)):
+        roll_with_air(layers)
 case.plot("Pressure on the left wall at the still level", "t, s", "mbar",
           curves + [(f"peak {k + 1}, mean of 100 repeats", [END*(k + 1)/6, END*(k + 2)/6], [m, m], False) for k, (m, _) in enumerate(PEAKS)])
 case.finish()
