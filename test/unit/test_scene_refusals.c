@@ -45,6 +45,26 @@ static void a_comma_too_many_is_named(void **state)
     }
 }
 
+static void a_column_of_a_probe_is_told_as_keys(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 0.1, \"end_time\": 1,\n"
+        "\"fluids\": [],"
+        "\"probes\": [ { \"name\": \"p\", \"position\": [0, 0, 0] } ],\n"
+        "\"references\": [ { \"file\": \"/\", \"column\": \"p_pressure\" } ] }";
+    tobi_report *report = NULL;
+    tobi_scene *scene;
+    tobi_error err = { 0 };
+    assert_int_not_equal(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, &report, &err), 0);
+    int told = 0;
+    for (int k = 0; k < tobi_report_count(report); k++)
+        told |= strstr(tobi_report_line(report, k), "references[0].column: \"p_pressure\" is of a probe: "
+                       "write \"probe\": \"p\", \"column\": \"pressure\"") != NULL;
+    assert_true(told);
+    tobi_report_free(report);
+}
+
 #define BOX "\"box\": { \"min\": [0.4, 0.4, 0.4], \"max\": [0.6, 0.6, 0.6] }"
 
 static void keys_are_named(void **state)
@@ -183,6 +203,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_comma_too_many_is_named),
+        cmocka_unit_test(a_column_of_a_probe_is_told_as_keys),
         cmocka_unit_test(keys_are_named),
         cmocka_unit_test(the_start_names_keys), cmocka_unit_test(the_start_names_motions),
         cmocka_unit_test(rounding_is_no_breach),
