@@ -98,30 +98,49 @@ static int fall(const void *a, const void *b)
     return x > y ? -1 : x < y;
 }
 
-/* From crossing upwards to crossing upwards. */
-static int measure_heights(wave_gauge *g, size_t count, double step)
+static void sum_up(double *height, int waves, double span, wave_heights *out)
 {
-    double *height = calloc(count_crossings(g->eta, count) + 1, sizeof *height);
-    double first = NAN, last = NAN, high = 0, low = 0, sum = 0;
-    int waves = 0;
+    const int highest = waves >= 3 ? waves/3 : 1;
+    double sum = 0, third = 0;
+    *out = (wave_heights){ waves, NAN, NAN, NAN, NAN, NAN };
+    if (waves == 0) return;
+    qsort(height, (size_t)waves, sizeof *height, fall);
+    for (int k = 0; k < waves; k++) sum += height[k], third += k < highest ? height[k] : 0;
+    *out = (wave_heights){ waves, sum/waves, third/highest, height[0], height[waves - 1], span/waves };
+}
+
+int wave_find_heights(const double *time, const double *eta, size_t count, double half, wave_heights *out)
+{
+    double *height = calloc(count_crossings(eta, count) + 1, sizeof *height);
+    double first = NAN, last = NAN, crossing = NAN, high = -INFINITY, low = INFINITY;
+    int waves = 0, below = 0;
     if (!height) return -1;
     for (size_t n = 1; n < count; n++) {
-        if (g->eta[n - 1] < 0 && g->eta[n] >= 0) {
-            last = (double)n - g->eta[n]/(g->eta[n] - g->eta[n - 1]);
-            if (isnan(first)) first = last;
-            else height[waves++] = high - low;
-            high = low = 0;
-        }
-        high = fmax(high, g->eta[n]);
-        low = fmin(low, g->eta[n]);
+        const double t0 = time ? time[n - 1] : (double)n - 1, t1 = time ? time[n] : (double)n;
+        if (eta[n - 1] < 0 && eta[n] >= 0) crossing = t0 + (t1 - t0)*eta[n - 1]/(eta[n - 1] - eta[n]);
+        high = fmax(high, eta[n]), low = fmin(low, eta[n]);
+        below |= eta[n] < -half;
+        if (!below || isnan(crossing) || !(eta[n] > half)) continue;
+        last = crossing;
+        if (isnan(first)) first = last;
+        else height[waves++] = high - low;
+        below = 0;
+        high = low = eta[n];
     }
-    qsort(height, (size_t)waves, sizeof *height, fall);
-    for (int k = 0; k < waves/3; k++) sum += height[k];
-    g->waves = waves;
-    g->height_max = waves > 2 ? height[0] : NAN;
-    g->height_third = waves > 2 ? sum/(waves/3) : NAN;
-    g->mean_period = waves > 0 ? step*(last - first)/waves : NAN;
+    sum_up(height, waves, last - first, out);
     free(height);
+    return 0;
+}
+
+/* Ripples of a hundredth of the waves do not make two of one. */
+static int measure_heights(wave_gauge *g, size_t count, double step)
+{
+    wave_heights h;
+    if (wave_find_heights(NULL, g->eta, count, 0.01*g->height_m0, &h) != 0) return -1;
+    g->waves = h.waves;
+    g->height_max = h.waves > 2 ? h.most : NAN;
+    g->height_third = h.waves > 2 ? h.third : NAN;
+    g->mean_period = step*h.period;
     return 0;
 }
 

@@ -32,6 +32,16 @@ typedef struct wave_group {
     double resolved;                /* share of the variance that the gauges can tell apart      */
 } wave_group;
 
+/* Waves from crossing upwards to crossing upwards of 0; heights in the unit of eta. */
+typedef struct wave_heights {
+    int    waves;                   /* whole ones; without one the rest is NaN                   */
+    double mean, third, most, least;        /* of all, of the highest third, one at least        */
+    double period;                  /* mean time                                                 */
+} wave_heights;
+
+/* time: rises; NULL: rows are 1 apart. A crossing counts when the level has been below -half before it and
+   above half after it. -1: no memory. */
+int wave_find_heights(const double *time, const double *eta, size_t count, double half, wave_heights *out);
 /* Cuts the start of the records to whole periods, takes mean and trend out, and measures each gauge. eta
    holds levels before. -1: no memory; 1: there is less than one wave. */
 int wave_measure(wave_set *s);
