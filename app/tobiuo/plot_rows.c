@@ -139,6 +139,7 @@ const columns_row plot_joints[] = {
     { "joints_force", "Force of the joints", { "force_x", "force_y", "force_z" } },
     { "joints_moment", "Moment of the joints", { "moment_x", "moment_y", "moment_z" } },
     { "joints_angle", "Angle and gap of the joints", { "angle", "gap" } },
+    { "joints_power", "Motors and dampers of the joints", { "motor_torque", "motor_force", "power" } },
     { 0 }
 };
 
@@ -151,6 +152,7 @@ const char *plot_unit(const char *column, int dimension)
         { "torque", "N m", "N m per m" }, { "force", "N", "N per m" }, { "weight", "N", "N per m" },
         { "pressure", "Pa", "Pa" }, { "level", "m", "m" }, { "run_up", "m", "m" }, { "distance", "m", "m" },
         { "moment_", "N m", "N m per m" }, { "flow", "m3/s", "m2/s" }, { "_volume", "m3", "m2" },
+        { "power", "W", "W per m" },
         { "energy", "J", "J per m" }, { "work", "J", "J per m" }, { "dissipation", "J", "J per m" },
         { "momentum", "kg m/s", "kg m/s per m" }, { "tension", "N", "N per m" },
         { "angle", "degrees", "degrees" }, { "gap", "m", "m" },

@@ -39,7 +39,8 @@ tobi_status tobi_joints_open(tobi_run *run, bool continued, tobi_error *err)
         for (int v = 0; v < VALUES; v++) {
             if (!is_told(run, &info, v)) continue;
             snprintf(names[count], NAME, "%s_%s", name, values[v].name);
-            columns[count] = (tobi_csv_column){ names[count], values[v].unit };
+            columns[count] = (tobi_csv_column){ names[count],
+                tobi_run_unit(values[v].unit, run->world->sim.def.dimension) };
             count++;
         }
     }

@@ -131,8 +131,8 @@ const tobi_column *tobi_run_column(tobi_table table, int index)
 const char *tobi_run_unit(const char *unit, int dimension)
 {
     static const char *const per_depth[][2] = {
-        { "N", "N per m" }, { "N m", "N m per m" }, { "J", "J per m" }, { "kg", "kg per m" },
-        { "kg m/s", "kg m/s per m" }, { "m3", "m2" }, { "m3/s", "m2/s" } };
+        { "N", "N per m" }, { "N m", "N m per m" }, { "J", "J per m" }, { "W", "W per m" },
+        { "kg", "kg per m" }, { "kg m/s", "kg m/s per m" }, { "m3", "m2" }, { "m3/s", "m2/s" } };
     for (size_t k = 0; dimension == 2 && k < sizeof per_depth/sizeof *per_depth; k++)
         if (strcmp(unit, per_depth[k][0]) == 0) return per_depth[k][1];
     return unit;

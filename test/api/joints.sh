@@ -28,8 +28,8 @@ END2
 for method in dfsph wcsph isph eisph; do
     expect 0 "" run rafts.json --out whole --quiet --force --threads 1 --set method=$method
     check "$method: a table of forces, angles and gaps" \
-        has whole/joints.csv "time [s]" "hinge_force_x [N]" "hinge_force_y [N]" "hinge_moment_z [N m]" \
-        "hinge_angle [degrees]" "hinge_gap [m]" "foot_force_x [N]"
+        has whole/joints.csv "time [s]" "hinge_force_x [N per m]" "hinge_force_y [N per m]" "hinge_moment_z [N m per m]" \
+        "hinge_angle [degrees]" "hinge_gap [m]" "foot_force_x [N per m]"
     check "$method: the joints are closed" \
         awk -F, "$by_name"' v("hinge_gap [m]") > 1e-12 || v("foot_gap [m]") > 1e-12 || $0 ~ /nan/ { bad = 1 }
                  END { exit lost || bad || NR < 8 }' whole/joints.csv
@@ -101,12 +101,12 @@ for method in dfsph wcsph isph eisph; do
     told=$([ $method = dfsph ] && echo "scatters by")
     expect 0 "$told" run motors.json --out whole --quiet --force --threads 1 --set method=$method
     check "$method: torque and power of motors" has whole/joints.csv "tail_angle [degrees]" "tail_gap [m]" \
-        "tail_motor_torque [N m]" "tail_power [W]" "tail_work [J]" "flap_motor_torque [N m]" "flap_power [W]" \
-        "flap_work [J]"
+        "tail_motor_torque [N m per m]" "tail_power [W per m]" "tail_work [J per m]" "flap_motor_torque [N m per m]" "flap_power [W per m]" \
+        "flap_work [J per m]"
     check "$method: an angle by a file is kept, a torque is at its bound" \
         awk -F, "$by_name"' v("time [s]") > 0.08 && (v("flap_angle [degrees]") - 8)^2 > 1e-16 { bad = 1 }
-                 v("tail_motor_torque [N m]")^2 > 1.000001 { bad = 1 }
-                 v("tail_motor_torque [N m]")^2 > 0.999999 { bound = 1 } END { exit lost || bad || !bound }' \
+                 v("tail_motor_torque [N m per m]")^2 > 1.000001 { bad = 1 }
+                 v("tail_motor_torque [N m per m]")^2 > 0.999999 { bound = 1 } END { exit lost || bad || !bound }' \
         whole/joints.csv
     expect 0 "" run motors.json --out parts --quiet --force --threads 2 --until 0.05 --set method=$method
     expect 0 "" resume parts --quiet --threads 2 --until 0.1
@@ -114,7 +114,7 @@ for method in dfsph wcsph isph eisph; do
         check "$method: $table is the same after a resume, with two threads" cmp whole/$table.csv parts/$table.csv
     done
     check "$method: joint_work is the sum of the works of joints" \
-        awk -F, "$by_name"' FILENAME ~ /joints/ { works = v("tail_work [J]") + v("flap_work [J]"); next }
+        awk -F, "$by_name"' FILENAME ~ /joints/ { works = v("tail_work [J per m]") + v("flap_work [J per m]"); next }
                  { sum = v("joint_work") } END { exit lost || !(works != 0 && (works - sum)^2 < 1e-12*sum^2) }' \
         whole/joints.csv whole/history.csv
 done
@@ -159,10 +159,10 @@ printf 'time,position\n0,0\n0.04,0.002\n0.08,0.008\n' > ways.csv
 for method in dfsph wcsph isph eisph; do
     told=$([ $method = dfsph ] && echo "scatters by")
     expect 0 "$told" run slides.json --out slides --quiet --force --threads 1 --set method=$method
-    check "$method: force and power of guides" has slides/joints.csv "piston_motor_force [N]" "piston_power [W]" \
-        "piston_work [J]" "buoy_force_x [N]" "buoy_motor_force [N]" "buoy_power [W]" "buoy_work [J]"
+    check "$method: force and power of guides" has slides/joints.csv "piston_motor_force [N per m]" "piston_power [W per m]" \
+        "piston_work [J per m]" "buoy_force_x [N per m]" "buoy_motor_force [N per m]" "buoy_power [W per m]" "buoy_work [J per m]"
     check "$method: a force is at its bound" \
-        awk -F, "$by_name"' { f = v("buoy_motor_force [N]") } f^2 > 10000.01 { bad = 1 } f^2 > 9999.99 { bound = 1 }
+        awk -F, "$by_name"' { f = v("buoy_motor_force [N per m]") } f^2 > 10000.01 { bad = 1 } f^2 > 9999.99 { bound = 1 }
                  END { exit lost || bad || !bound }' slides/joints.csv
     check "$method: a position by a file is kept" \
         awk -F, "$by_name"' v("name") == "piston" && v("time") > 0.09 { x = v("position_x") }
@@ -178,7 +178,7 @@ check "and runs alike" cmp slides/joints.csv again/joints.csv
 expect 0 "" run slides.json --out held --quiet --force --set method=isph --set bodies.buoy.translation='[0,-0.05]' \
     --set bodies.buoy.guide.motor='{"speed":0}' --set bodies.piston.guide.motor='{"speed":0}' --set end_time=0.5
 check "a brake holds a buoy against its buoyancy" \
-    awk -F, "$by_name"' v("time [s]") > 0.2 { sum += v("buoy_motor_force [N]"); n++ }
+    awk -F, "$by_name"' v("time [s]") > 0.2 { sum += v("buoy_motor_force [N per m]"); n++ }
              END { exit lost || !(n > 5 && (sum/n + 122.6)^2 < 16) }' held/joints.csv
 # A piston makes the same wave by a motor as by a motion.
 cat > wave.json <<'END2'

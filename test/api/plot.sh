@@ -114,7 +114,7 @@ check "the marks within the run's time: twice 3, and 2 in the legend" \
     test "$(points tank/plots/compare_wall_force_z.svg)" = 8
 check "no name was run as a command" test ! -e pwned -a ! -e tank/plots/pwned
 printf 'time [s],rope_tension [N],rope_distance [m]\n0,1,2\n0.1,2,3\n' > tank/lines.csv
-printf 'time [s],pin_force_x [N],pin_moment_z [N m],pin_angle [degrees],pin_gap [m]\n0,1,2,3,0\n0.1,2,3,4,0\n' \
+printf 'time [s],pin_force_x [N],pin_moment_z [N m],pin_angle [degrees],pin_gap [m],pin_power [W]\n0,1,2,3,0,0\n0.1,2,3,4,0,5\n' \
     > tank/joints.csv
 printf 'time,name,position_x,velocity_x,mean_liquid_force_x\n0,jelly,1,0,0\n0.1,jelly,1,2,3\n' > tank/solids.csv
 expect 0 "" plot tank
@@ -122,6 +122,7 @@ check "lines are drawn" has tank/plots/lines.svg "rope_tension"
 check "forces of joints are drawn" has tank/plots/joints_force.svg "force_x, N"
 check "moments of joints are drawn" has tank/plots/joints_moment.svg "pin_moment_z"
 check "angles of joints are drawn" has tank/plots/joints_angle.svg "angle, degrees"
+check "power of joints is drawn" has tank/plots/joints_power.svg "power, W"
 check "motions of solids are drawn" has tank/plots/jelly_solid_motion.svg "velocity, m/s"
 check "forces on solids are drawn" has tank/plots/jelly_liquid_force.svg "mean force, N"
 rm tank/lines.csv tank/joints.csv tank/solids.csv
