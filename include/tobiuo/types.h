@@ -217,6 +217,8 @@ typedef struct tobi_body_def {
     double capsule_start[3], capsule_end[3], capsule_radius;         /* half a sphere at both ends    */
     double plate_centre[3], plate_normal[3], plate_along[3];         /* along: of its length; 0 = any */
     double plate_length, plate_width, plate_thickness;
+    double knife_edge[3], knife_direction[3], knife_along[3];        /* middle; from back to edge; of it */
+    double knife_length, knife_height, knife_thickness, knife_angle; /* m; degrees between its faces     */
     double scale[3];            /* 1, per axis, about the mesh's own origin, first                   */
     double rotation_axis[3];    /* direction; second                                                 */
     double rotation_angle;      /* degrees                                                           */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BOX, SPHERE, CYLINDER, CAPSULE, PLATE };
+enum { BOX, SPHERE, CYLINDER, CAPSULE, PLATE, KNIFE };
 
 static tobi_status make_box(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
 {
@@ -71,20 +71,39 @@ static tobi_status make_plate(tobi_body *b, const tobi_body_def *def, int dimens
     return tobi_mesh_plate(b->name, &plate, &b->mesh, err);
 }
 
+static tobi_status make_knife(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
+{
+    tobi_knife knife = { .length = def->knife_length, .height = def->knife_height,
+                         .thickness = def->knife_thickness, .angle = def->knife_angle };
+    memcpy(knife.edge, def->knife_edge, sizeof knife.edge);
+    memcpy(knife.direction, def->knife_direction, sizeof knife.direction);
+    memcpy(knife.along, def->knife_along, sizeof knife.along);
+    if (dimension == 2) {
+        knife.edge[2] = knife.direction[2] = 0;
+        if (knife.direction[0] == 0 && knife.direction[1] == 0) knife.direction[1] = -1;
+        memcpy(knife.along, (double[3]){ 0, 0, 1 }, sizeof knife.along);
+        knife.length = 2*knife.height;
+    }
+    if (!(knife.length > 0) || !(knife.height > 0))
+        return tobi_fail(err, TOBI_INVALID, "body '%s': its knife is %g m long and %g m high; both must be "
+                         "above 0", b->name, knife.length, knife.height);
+    return tobi_mesh_knife(b->name, &knife, &b->mesh, err);
+}
+
 static int find_kind(const tobi_body_def *def, int *shapes)
 {
     const double size[] = { 0, def->sphere_radius, def->cylinder_radius, def->capsule_radius,
-                            def->plate_thickness };
+                            def->plate_thickness, def->knife_thickness };
     int kind = BOX;
     *shapes = def->mesh != NULL;
-    for (int k = SPHERE; k <= PLATE; k++)
+    for (int k = SPHERE; k <= KNIFE; k++)
         if (size[k] > 0) ++*shapes, kind = k;
     return kind;
 }
 
 const char *tobi_body_shape_key(const tobi_body_def *def)
 {
-    static const char *const keys[] = { "box", "sphere", "cylinder", "capsule", "plate" };
+    static const char *const keys[] = { "box", "sphere", "cylinder", "capsule", "plate", "knife" };
     int shapes;
     return def->mesh ? "mesh" : keys[find_kind(def, &shapes)];
 }
@@ -95,10 +114,11 @@ tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dime
     const int kind = find_kind(def, &shapes);
     if (shapes > 1)
         return tobi_fail(err, TOBI_INVALID, "body '%s' has %d shapes; it may have one: a mesh, a box, a "
-                         "sphere, a cylinder, a capsule or a plate", b->name, shapes);
+                         "sphere, a cylinder, a capsule, a plate or a knife", b->name, shapes);
     if (def->mesh) return tobi_at_key(err, tobi_mesh_read(def->mesh, &b->mesh, err), "mesh");
     const tobi_status status = kind == BOX     ? make_box(b, def, dimension, err)
                                : kind == PLATE ? make_plate(b, def, dimension, err)
+                               : kind == KNIFE ? make_knife(b, def, dimension, err)
                                                : make_round(b, def, kind, dimension, err);
     return tobi_at_key(err, status, "%s", tobi_body_shape_key(def));
 }

@@ -186,3 +186,41 @@ tobi_status tobi_mesh_plate(const char *name, const tobi_plate *plate, tobi_mesh
         }
     return tobi_mesh_build(name, 8, (const double (*)[3])x, 12, triangles, out, err);
 }
+
+tobi_status tobi_mesh_knife(const char *name, const tobi_knife *knife, tobi_mesh *out, tobi_error *err)
+{
+    enum { CORNERS = 5 };
+    int32_t triangles[4*CORNERS - 4][3];
+    double axis[3][3], x[2*CORNERS][3];      /* along, across, from the edge to the back */
+    int count = 0;
+    for (int a = 0; a < 3; a++) axis[2][a] = -knife->direction[a];
+    if (!(vec3_length(axis[2]) > 0))
+        return tobi_fail(err, TOBI_INVALID, "body '%s': the direction of its knife has none", name);
+    vec3_normalize(axis[2]);
+    vec3_add_scaled(axis[0], knife->along, -vec3_dot(knife->along, axis[2]), axis[2]);
+    if (!(vec3_length(axis[0]) > 1e-9*vec3_length(knife->along)))
+        return tobi_fail(err, TOBI_INVALID, "body '%s': along and direction of its knife are parallel", name);
+    vec3_normalize(axis[0]);
+    vec3_cross(axis[1], axis[2], axis[0]);
+    const double half = 0.5*knife->thickness, bevel = half/tan(knife->angle*PI/360);
+    if (!(bevel < knife->height))
+        return tobi_fail(err, TOBI_INVALID, "body '%s': its knife of %g m is %g m high; with faces at %g "
+                         "degrees it must be higher than %.4g m", name, knife->thickness, knife->height,
+                         knife->angle, bevel);
+    const double corner[CORNERS][2] = { { 0, 0 }, { half, bevel }, { half, knife->height },
+                                        { -half, knife->height }, { -half, bevel } };
+    for (int k = 0; k < 2*CORNERS; k++)
+        for (int a = 0; a < 3; a++)
+            x[k][a] = knife->edge[a] + (k < CORNERS ? -0.5 : 0.5)*knife->length*axis[0][a] +
+                      corner[k%CORNERS][0]*axis[1][a] + corner[k%CORNERS][1]*axis[2][a];
+    for (int k = 0; k < CORNERS; k++) {      /* the sides, then both ends */
+        const int next = (k + 1)%CORNERS;
+        memcpy(triangles[count++], (int32_t[3]){ k, next, k + CORNERS }, sizeof *triangles);
+        memcpy(triangles[count++], (int32_t[3]){ next, next + CORNERS, k + CORNERS }, sizeof *triangles);
+        if (k == 0 || next == 0) continue;
+        memcpy(triangles[count++], (int32_t[3]){ 0, next, k }, sizeof *triangles);
+        memcpy(triangles[count++], (int32_t[3]){ CORNERS, k + CORNERS, next + CORNERS }, sizeof *triangles);
+    }
+    return tobi_mesh_build(name, 2*CORNERS, (const double (*)[3])x, count, (const int32_t (*)[3])triangles,
+                           out, err);
+}

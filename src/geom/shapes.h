@@ -1,4 +1,4 @@
-/* Bodies by words: closed surfaces of a sphere, a cylinder, a capsule, a plate. */
+/* Bodies by words: closed surfaces of a sphere, a cylinder, a capsule, a plate, a knife. */
 #pragma once
 #include "geom/mesh.h"
 
@@ -15,3 +15,11 @@ tobi_status tobi_mesh_round(const char *name, const tobi_round *shape, double ed
    that is. TOBI_INVALID, with name: no direction. */
 typedef struct tobi_plate { double centre[3], normal[3], along[3], length, width, thickness; } tobi_plate;
 tobi_status tobi_mesh_plate(const char *name, const tobi_plate *plate, tobi_mesh *out, tobi_error *err);
+
+/* A plate whose two faces meet in an edge at `angle`, degrees. edge: its middle; along: its direction, which
+   need not be normal to `direction`, from the back to the edge. TOBI_INVALID, with name: no direction; too
+   low for that angle. */
+typedef struct tobi_knife {
+    double edge[3], direction[3], along[3], length, height, thickness, angle;
+} tobi_knife;
+tobi_status tobi_mesh_knife(const char *name, const tobi_knife *knife, tobi_mesh *out, tobi_error *err);

@@ -214,7 +214,8 @@ static void check_solids(const tobi_scene *scene, tobi_source *source)
     }
 }
 
-static const char *const body_shapes[] = { "mesh", "box", "sphere", "cylinder", "capsule", "plate" };
+static const char *const body_shapes[] = { "mesh", "box", "sphere", "cylinder", "capsule", "plate",
+                                          "knife" };
 
 /* Which shapes an entry of bodies gives: how many, and the last. */
 static int count_shapes(json_t *value, const char **last)
@@ -250,11 +251,12 @@ static void check_shape(const tobi_scene *scene, tobi_source *source, int body, 
     const int count = count_shapes(value, &shape);
     if (!json_is_object(value)) return;
     if (count != 1) {
-        tobi_source_mistake(source, entry, "must have one of mesh, box, sphere, cylinder, capsule and plate; "
-                            "it has %s", count ? "several" : "none");
+        tobi_source_mistake(source, entry, "must have one of mesh, box, sphere, cylinder, capsule, plate and "
+                            "knife; it has %s", count ? "several" : "none");
         return;
     }
-    const char *size = strcmp(shape, "plate") == 0 ? "thickness" : "radius";
+    const int flat = strcmp(shape, "plate") == 0 || strcmp(shape, "knife") == 0;
+    const char *size = flat ? "thickness" : "radius";
     tobi_place place = { entry, shape, 0 };
     if (strcmp(shape, "box") == 0) check_body_box(scene, source, body, entry);
     else if (strcmp(shape, "mesh") != 0 && !json_object_get(json_object_get(value, shape), size))

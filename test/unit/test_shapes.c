@@ -92,6 +92,15 @@ static void shapes_have_their_volume_and_inertia(void **state)
         b.plate_thickness = 0.02;
         info = add(world, &b);
         expect("plate", &info, 0.2*0.2*0.02, (0.2*0.2 + 0.02*0.02)/12, 0.2*0.2/6, 1e-9);
+        b.plate_thickness = 0;
+        b.name = "knife";
+        set(b.knife_edge, 0.5, 0.5, 0.1);
+        set(b.knife_along, 1, 1, 3);
+        b.knife_length = 0.2, b.knife_height = 0.3, b.knife_thickness = 0.02;
+        b.knife_angle = 53.13010235415598;
+        info = add(world, &b);             /* its bevel is as high as it is thick */
+        assert_true(fabs(info.volume/(0.2*0.02*(0.3 - 0.01)) - 1) < 1e-9);
+        assert_true(fabs(info.position[2] - 0.1 - (0.01*0.04/3 + 0.28*0.16)/0.29) < 1e-9);
         tobi_world_destroy(world);
     }
 }
@@ -140,6 +149,12 @@ static void two_dimensions_have_discs_and_plates(void **state)
     info = add(world, &b);
     assert_true(fabs(info.volume/0.02 - 1) < 1e-12);
     assert_true(fabs(info.inertia[8]/(20*(0.4*0.4 + 0.05*0.05)/12) - 1) < 1e-9);
+    b.plate_thickness = 0;
+    b.name = "knife";
+    set(b.knife_edge, 0.5, 0.1, 0);
+    b.knife_height = 0.3, b.knife_thickness = 0.02, b.knife_angle = 53.13010235415598;
+    info = add(world, &b);
+    assert_true(fabs(info.volume/(0.02*0.29) - 1) < 1e-9 && info.position[1] > 0.1);
     tobi_world_destroy(world);
 }
 
@@ -169,6 +184,16 @@ static void bad_shapes_are_refused(void **state)
     refuse(world, &b, "along and normal of its plate are parallel");
     set(b.plate_normal, 0, 0, 0);
     refuse(world, &b, "the normal of its plate has no direction");
+    b = tobi_default_body_def();
+    b.knife_thickness = 0.02;
+    refuse(world, &b, "its knife is 0 m long and 0 m high; both must be above 0");
+    b.knife_length = 0.2, b.knife_height = 0.05;
+    refuse(world, &b, "its knife of 0.02 m is 0.05 m high; with faces at 20 degrees it must be higher than "
+           "0.05671 m");
+    set(b.knife_along, 0, 0, 1);
+    refuse(world, &b, "along and direction of its knife are parallel");
+    set(b.knife_direction, 0, 0, 0);
+    refuse(world, &b, "the direction of its knife has none");
     tobi_world_destroy(world);
     tobi_world_destroy(flat);
 }

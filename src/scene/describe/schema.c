@@ -271,7 +271,7 @@ static void require_region(json_t *schema)
         json_array_append_new(shapes, json_pack("{s[s]}", "required", "sphere"));
     }
     static const char *const more[][2] = { { "cylinder", "radius" }, { "capsule", "radius" },
-                                           { "plate", "thickness" } };
+                                           { "plate", "thickness" }, { "knife", "thickness" } };
     for (size_t k = 0; k < sizeof more/sizeof *more; k++) {
         json_t *shape = json_object_get(properties, more[k][0]);
         if (!shape) continue;
