@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#define AIR { "air", "kg/m3", 0, 0, 100, "density of the air in the rest of the tank: 1.2; 0: none", 0 }
 #define UNTIL(t) { "until", "s", t, 1e-6, 1e5, "simulated time at which the run ends", 0 }
 #define TANK(l, w, h) \
     LENGTH("length", l, "of the tank, along x"), ACROSS("width", w, "of the tank, along y"), \
@@ -59,12 +60,33 @@ static void put_world(const family_choice *c, FILE *out, const double size[3], c
     fprintf(out, "  \"end_time\": %.10g,\n", chosen(c, "until"));
 }
 
+/* In all of the tank that is above or behind water up to `high`. */
+static void put_air(const family_choice *c, FILE *out, const double high[3])
+{
+    const double size[3] = { chosen(c, "length"), chosen(c, "width"), chosen(c, "height") };
+    const double low[2][3] = { { 0, 0, high[2] }, { high[0], 0, 0 } };
+    const double top[2][3] = { { size[0], size[1], size[2] }, { size[0], size[1], high[2] } };
+    const int room[2] = { high[2] < size[2], high[0] < size[0] };
+    if (!(chosen(c, "air") > 0) || !(room[0] || room[1])) return;
+    fprintf(out, ",\n    { \"name\": \"air\", \"density\": %.10g, \"viscosity\": 1.8e-5, \"visible\": false,"
+            "     // cushions impacts\n      \"fill\": [", chosen(c, "air"));
+    for (int k = 0; k < 2; k++) {
+        if (!room[k]) continue;
+        fputs(k > 0 && room[0] ? ",\n                { \"box\": { " : " { \"box\": { ", out);
+        put_corners(c, out, low[k], top[k]);
+        fputs(" } }", out);
+    }
+    fputs(" ] }", out);
+}
+
 void put_water(const family_choice *c, FILE *out, const double low[3], const double high[3])
 {
     fputs("  \"fluids\": [\n    { \"name\": \"water\", \"density\": 1000, \"viscosity\": 1.0e-3,\n"
           "      \"fill\": [ { \"box\": { ", out);
     put_corners(c, out, low, high);
-    fputs(" } } ] }\n  ],\n", out);
+    fputs(" } } ] }", out);
+    put_air(c, out, high);
+    fputs("\n  ],\n", out);
 }
 
 void put_probe(const family_choice *c, FILE *out, int first, const char *name, const char *kind,
@@ -116,7 +138,7 @@ static void write_static(const family_choice *c, FILE *out)
     LENGTH("water-height", h, "of the column of water")
 
 static const family_option dam_options[] = {
-    SPACING(0.01), UNTIL(1), TANK(1, 0.15, 0.5), COLUMN(0.3, 0.25), { 0 } };
+    SPACING(0.01), UNTIL(1), TANK(1, 0.15, 0.5), COLUMN(0.3, 0.25), AIR, { 0 } };
 static const family_option lobovsky_options[] = {
     SPACING(0.015), UNTIL(1.1), LENGTH("water-height", 0.3, "0.3 or 0.6 in the experiment"),
     LENGTH("height", 0.6, "of the computed air and water"),
@@ -260,7 +282,7 @@ static const family_option slosh_options[] = {
     SPACING(0.02), UNTIL(4), TANK(0.9, 0.1, 0.5), LENGTH("depth", 0.2, "of the water"),
     { "angle", "degrees", 4, -45, 45, "that the end at --length is lowered by, first", 0 },
     { "period", "s", 0, 0, 1e5, "of its turns, which grow for a fifth of it; 0: tilted at once", 0 },
-    { 0 } };
+    AIR, { 0 } };
 
 /* The turn to and fro as a frame: the tank stands still, gravity and inertia turn. A positive angle lowers
    the far end first: about y in 3-D, against z in 2-D, where y is up. */

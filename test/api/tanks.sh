@@ -60,6 +60,17 @@ for more in "sloshing --period 1.4" "sloshing --dimension 2 --period 1.4" "wave_
     expect 0 "" run more --quiet --until 0.02 --force --out out_more
     rm -rf more
 done
+# Air in the rest of the tank: all of it is full, by isph alone.
+for more in "sloshing --dimension 2 --spacing 0.05" "dam_break --dimension 2 --spacing 0.025" "dam_break --spacing 0.05"; do
+    expect 0 "" new $more --air 1.2 more
+    expect 0 "" run more --quiet --until 0.01 --force --out out_more
+    case $more in sloshing*) full=0.45 ;; *2*) full=0.5 ;; *) full=0.075 ;; esac
+    check "$more: air fills the tank" python3 -c 'import json, sys
+d = json.load(open("out_more/resolved.json"))["spacing"]; n = json.load(open("out_more/summary.json"))["fluid_particles"]
+sys.exit(abs(n*d**int(sys.argv[2])/float(sys.argv[1]) - 1) > 0.05)' $full "$(case $more in *--dimension*) echo 2 ;; *) echo 3 ;; esac)"
+    rm -rf more
+done
+expect 1 "1 : 10" new sloshing --air 1.2 --method dfsph more
 # A wave tank by its defaults: steady waves in front of the beach, little behind it.
 expect 0 "" new wave_tank --dimension 2 --spacing 0.03 waves
 for text in '"ramp": 2.4,' '"damping_zones": \[ { "box": { "min": \[3.9, 0\], "max": \[5.7, 0.5\]' '"end_time": 13.2,'; do
