@@ -94,6 +94,7 @@ void put_probe(const family_choice *c, FILE *out, int first, const char *name, c
 {
     fprintf(out, "%s\n    { \"name\": \"%s\", ", first ? "" : ",", name);
     if (strcmp(kind, "point") != 0) fprintf(out, "\"kind\": \"%s\", ", kind);
+    if (strcmp(kind, "level") == 0 && chosen(c, "air") > 0) fputs("\"fluid\": \"water\", ", out);
     fputs("\"position\": ", out);
     put_place(c, out, x, y, z);
     fputs(" }", out);

@@ -328,6 +328,7 @@ typedef struct tobi_probe_def {
     double normal[3], along[3]; /* of any length; 0 = up, and any direction that is normal to normal */
     double length, width, height;   /* m; in 2-D a rectangle is a line and a box has no width        */
     const char *body;           /* name of the body that it sits on and moves with, or NULL          */
+    const char *fluid;          /* name of the fluid that a level, run-up, flow or volume is of; NULL = all */
     double rate;                /* Hz, of its values; 0 = as output.probe_interval says              */
     double cutoff;              /* Hz, of its low pass; 0 = none                                     */
     int    order;               /* 0: of first order, 1: Butterworth of second order                 */

@@ -38,6 +38,7 @@ static const struct { const char *key; int kinds; const char *why; } read_by[] =
     { "length", BOXES, "is for a patch, a flow or a volume" },
     { "width", BOXES, "is for a patch, a flow or a volume" },
     { "height", OF(VOLUME), "is for a volume" },
+    { "fluid", ~(OF(POINT) | OF(PATCH)), "is for a level, a run-up, a flow or a volume" },
     { "body", ~OF(LEVEL), "is not for a level, which stands still; a run-up can sit on a body" },
 };
 enum { READ_BY = sizeof read_by/sizeof *read_by };
@@ -78,9 +79,35 @@ static void check_sizes(const one *o, tobi_rows given)
     if (flat && d->along[2] != 0) tell(o, "along", "has a z, and the scene is 2-D");
 }
 
+enum { NAMES = 64 };
+
+/* None of the names is the one that a key has. */
+static void tell_nearest(const one *o, const char *key, const char *name, const char *const *names,
+                         size_t count)
+{
+    const tobi_place at = { &o->entry, key, 0 };
+    const char *near = tobi_suggest(name, names, count);
+    if (near) tobi_source_mistake(o->source, &at, "there is no %s \"%s\"; did you mean \"%s\"?", key, name,
+                                  near);
+    else tobi_source_mistake(o->source, &at, "there is no %s \"%s\"", key, name);
+}
+
+static void check_fluid(const one *o)
+{
+    const char *names[NAMES], *name = o->def->fluid;
+    size_t count = 0;
+    if (!name) return;
+    for (int f = 0; f < o->scene->fluid_count; f++) {
+        const char *other = o->scene->fluids[f].def.name;
+        if (!other) continue;
+        if (strcmp(other, name) == 0) return;
+        if (count < NAMES) names[count++] = other;
+    }
+    tell_nearest(o, "fluid", name, names, count);
+}
+
 static void check_body(const one *o)
 {
-    enum { NAMES = 64 };
     const char *names[NAMES], *name = o->def->body;
     const tobi_place at = { &o->entry, "body", 0 };
     size_t count = 0;
@@ -96,10 +123,7 @@ static void check_body(const one *o)
         }
         if (count < NAMES) names[count++] = body->def.name;
     }
-    const char *near = tobi_suggest(name, names, count);
-    if (near) tobi_source_mistake(o->source, &at, "there is no body \"%s\"; did you mean \"%s\"?", name,
-                                  near);
-    else tobi_source_mistake(o->source, &at, "there is no body \"%s\"", name);
+    tell_nearest(o, "body", name, names, count);
 }
 
 static void check_rate(const one *o)
@@ -133,6 +157,7 @@ void tobi_check_probes(const tobi_scene *scene, tobi_source *source)
         if (bound.given != bound.good) continue;
         check_sizes(&o, bound.given);
         check_body(&o);
+        check_fluid(&o);
         check_rate(&o);
     }
 }

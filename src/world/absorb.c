@@ -39,7 +39,7 @@ static double measure_level(const tobi_world *w, const absorber *a)
     vec3_sub(middle, b->centre, b->lower);
     const double front = find_end(b, a->direction, 1) + a->how.distance;
     vec3_add_scaled(x, b->centre, front - vec3_dot(middle, a->direction), a->direction);
-    return tobi_sensor_level(tobi_world_fluids(w), x);
+    return tobi_sensor_level(tobi_world_fluids(w), -1, x);
 }
 
 /* Where the domain ends along the direction, as seen from inside. */

@@ -124,9 +124,24 @@ static tobi_status find_body(const tobi_world *w, const tobi_probe_def *def, int
     return TOBI_OK;
 }
 
+static tobi_status find_fluid(const tobi_world *w, const tobi_probe_def *def, int *fluid, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    *fluid = -1;
+    if (!def->fluid) return TOBI_OK;
+    if (def->kind == TOBI_PROBE_POINT || def->kind == TOBI_PROBE_PATCH)
+        return tobi_fail(err, TOBI_INVALID, "probe '%s': a point or patch feels what is there; a fluid is for a "
+                         "level, a run-up, a flow or a volume", def->name);
+    for (int f = 0; f < s->fluid_count; f++)
+        if (strcmp(s->fluid[f].name, def->fluid) == 0) *fluid = f;
+    if (*fluid >= 0) return TOBI_OK;
+    return tobi_fail(err, TOBI_NOT_FOUND, "probe '%s' is of the fluid '%s', which is not there", def->name,
+                     def->fluid);
+}
+
 tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_error *err)
 {
-    int body;
+    int body, fluid;
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
     TOBI_NEED(def->name, "the name of the probe");
@@ -140,6 +155,7 @@ tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_
     TOBI_TRY(check_patch(w, def, err));
     TOBI_TRY(check_rate(w, def, err));
     TOBI_TRY(tobi_at_key(err, find_body(w, def, &body, err), "body"));
+    TOBI_TRY(tobi_at_key(err, find_fluid(w, def, &fluid, err), "fluid"));
     if (w->probe_count == TOBI_PROBE_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d probes", TOBI_PROBE_LIMIT);
     TOBI_TRY(tobi_names_check_probe(w, def->name, err));
@@ -147,8 +163,8 @@ tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a probe");
     w->probes = more;
     tobi_probe *p = &w->probes[w->probe_count++];
-    *p = (tobi_probe){ .def = *def, .body = body };
-    p->def.name = p->def.body = NULL;
+    *p = (tobi_probe){ .def = *def, .body = body, .fluid = fluid };
+    p->def.name = p->def.body = p->def.fluid = NULL;
     snprintf(p->name, sizeof p->name, "%s", def->name);
     return TOBI_OK;
 }
@@ -226,7 +242,7 @@ static void measure_run_up(const tobi_world *w, const tobi_probe *p, const tobi_
     vec3_sub(along, to, from);
     const double length = vec3_length(along);
     for (int a = 0; a < 3; a++) along[a] /= length;
-    const double reach = tobi_sensor_column(&w->system[0], from, along, length, &floor_at);
+    const double reach = tobi_sensor_column(&w->system[0], p->fluid, from, along, length, &floor_at);
     const int axis = tobi_sensor_up(&w->system[0], &sign);
     info->distance = reach > 0 ? reach : 0;
     info->run_up = from[axis] + info->distance*along[axis];
@@ -244,12 +260,12 @@ void tobi_world_measure_probe(const tobi_world *w, int probe, tobi_probe_info *i
     if (b && b->is_absent) return;
     if (has_box(p->def.kind)) make_box(w, p, b, &box);
     switch (p->def.kind) {
-    case TOBI_PROBE_LEVEL: info->level = tobi_sensor_level(s, p->def.position); break;
+    case TOBI_PROBE_LEVEL: info->level = tobi_sensor_level(s, p->fluid, p->def.position); break;
     case TOBI_PROBE_RUN_UP: measure_run_up(w, p, b, info); break;
     case TOBI_PROBE_PATCH: tobi_sensor_patch(s, &box, &info->pressure, info->force, info->moment); break;
-    case TOBI_PROBE_VOLUME: info->volume = tobi_sensor_volume(s, &box); break;
+    case TOBI_PROBE_VOLUME: info->volume = tobi_sensor_volume(s, p->fluid, &box); break;
     case TOBI_PROBE_FLOW:
-        info->flow = tobi_sensor_flow(s, &box, b ? b->rigid.velocity : still,
+        info->flow = tobi_sensor_flow(s, p->fluid, &box, b ? b->rigid.velocity : still,
                                       b ? b->rigid.angular_velocity : still,
                                       b ? b->centre : box.middle);
         break;

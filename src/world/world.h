@@ -7,7 +7,8 @@
 #include <assert.h>
 
 /* def: its name and body are NULL. body: by number, -1 = none. */
-typedef struct tobi_probe { tobi_probe_def def; char name[104]; int body; } tobi_probe;
+/* body, fluid: by number, -1: none, all. */
+typedef struct tobi_probe { tobi_probe_def def; char name[104]; int body, fluid; } tobi_probe;
 
 typedef struct tobi_drive tobi_drive;
 typedef struct tobi_motor_source tobi_motor_source;

@@ -473,6 +473,9 @@ static void scenes_tell_the_place(void **state)
     expect("\"body\": \"blok\"", "there is no body \"blok\"; did you mean \"block\"?");
     expect("\"body\": \"elephant\"", "there is no body \"elephant\"");
     expect("\"kind\": \"level\", \"body\": \"block\"", "is not for a level");
+    expect("\"kind\": \"level\", \"fluid\": \"water\"", NULL);
+    expect("\"kind\": \"level\", \"fluid\": \"wter\"", "there is no fluid \"wter\"; did you mean \"water\"?");
+    expect("\"fluid\": \"water\"", "probes[0].fluid: is for a level, a run-up, a flow or a volume");
     expect("\"filter\": { \"order\": \"butterworth\" }",
            "probes[0].filter.order: is of a filter, which needs a cutoff");
     expect("\"rate\": 1001", "probes[0].rate: is 1001 Hz, more than a value per time step of 0.001 s");
@@ -500,6 +503,53 @@ static void a_point_deep_in_a_body_is_told(void **state)
         assert_int_equal(told, k);
         tobi_world_destroy(world);
     }
+}
+
+static void two_along_x(const double x[3], double *v) { (void)x; v[0] = 2, v[1] = v[2] = 0; }
+
+/* 0.08 m of water, and air up to the lid. */
+static void a_sensor_is_of_one_fluid(void **state)
+{
+    (void)state;
+    tobi_world *world = make_tank(2, -9.81, 0.08, "isph");
+    tobi_fluid_def air = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_probe_def level = make("level", TOBI_PROBE_LEVEL, 0.1, 0.1, 0);
+    tobi_probe_def up = make("run_up", TOBI_PROBE_RUN_UP, 0.06, 0, 0);
+    tobi_probe_def volume = make("volume", TOBI_PROBE_VOLUME, 0.1, 0.1, 0);
+    tobi_probe_def flow = make("flow", TOBI_PROBE_FLOW, 0.1, 0.1, 0);
+    air.name = "air";
+    air.density = 1.2;
+    set_vector(fill.box_min, 0, 0.08, 0);
+    set_vector(fill.box_max, 0.2, 0.2, 0);
+    set_vector(up.end, 0.06, 0.18, 0);
+    set_vector(flow.normal, 1, 0, 0);
+    set_sizes(&volume, 0.1, 0, 0.18);
+    set_sizes(&flow, 0.18, 0, 0);
+    level.fluid = "air";
+    REFUSED(tobi_world_add_probe(world, &level, &err), TOBI_NOT_FOUND, "of the fluid 'air', which is not there");
+    OK(tobi_world_add_fluid(world, &air, &fill, 1, &err));
+    OK(tobi_world_start(world, &err));
+    set_field(world, "velocity", 3, two_along_x);
+    const double of_all[] = { 0.2, 0.18, 0.018 }, of_water[] = { 0.08, 0.08, 0.007 };
+    for (int only = 0; only < 2; only++) {
+        const double *expected = only ? of_water : of_all;
+        char names[4][8];
+        tobi_probe_def *all[] = { &level, &up, &volume, &flow };
+        for (int k = 0; k < 4; k++) {
+            snprintf(names[k], sizeof names[k], "p%d%d", k, only);
+            all[k]->name = names[k];
+            all[k]->fluid = only ? tobi_default_fluid_def().name : NULL;
+        }
+        assert_close(measure(world, &level).level, expected[0], 0.1*D, "level");
+        assert_close(measure(world, &up).distance, expected[1], 0.1*D, "run-up");
+        assert_close(measure(world, &volume).volume, expected[2], 1e-9, "volume");
+        assert_close(measure(world, &flow).flow, 2*expected[2]/0.1, 1e-6, "flow");
+    }
+    tobi_probe_def point = make("point", TOBI_PROBE_POINT, 0.1, 0.1, 0);
+    point.fluid = "air";
+    REFUSED(tobi_world_add_probe(world, &point, &err), TOBI_INVALID, "a point or patch feels what is there");
+    tobi_world_destroy(world);
 }
 
 static void a_deforming_body_holds_no_sensor(void **state)
@@ -530,7 +580,8 @@ int main(void)
         cmocka_unit_test(levels_of_the_main_body_of_water), cmocka_unit_test(a_dry_floor_and_a_block),
         cmocka_unit_test(a_run_up_ends_at_the_surface), cmocka_unit_test(low_passes),
         cmocka_unit_test(bad_sensors_are_refused), cmocka_unit_test(rates_and_filters_are_checked),
-        cmocka_unit_test(scenes_tell_the_place), cmocka_unit_test(a_deforming_body_holds_no_sensor),
+        cmocka_unit_test(scenes_tell_the_place), cmocka_unit_test(a_sensor_is_of_one_fluid),
+        cmocka_unit_test(a_deforming_body_holds_no_sensor),
         cmocka_unit_test(a_point_deep_in_a_body_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -14,12 +14,12 @@
 #define INSIDE 0.25         /* deeper than this a place is inside of a body, spacings */
 #define LEAST_OPEN 0.2      /* share of the kernel that a corner leaves at least */
 
-typedef struct share { const tobi_smoothing_constants *c; double sum; } share;
+typedef struct share { const tobi_system *s; const tobi_smoothing_constants *c; int fluid; double sum; } share;
 
 static void add_share(void *user, int64_t i, const double d[3])
 {
-    (void)i;
     share *a = user;
+    if (!tobi_sensor_counts(a->s, a->fluid, i)) return;
     const double r = vec3_length(d);
     if (r < a->c->h) a->sum += tobi_smoothing_w(a->c->shape, a->c->dimension, a->c->h, r);
 }
@@ -53,10 +53,10 @@ static double open_at(const tobi_system *s, const double local[3], int *inside)
     return open;
 }
 
-double tobi_sensor_occupancy(const tobi_system *s, const double x[3], int *inside)
+double tobi_sensor_occupancy(const tobi_system *s, int fluid, const double x[3], int *inside)
 {
     const tobi_smoothing_constants *c = &s->smoothing;
-    share a = { c, 0 };
+    share a = { s, c, fluid, 0 };
     double local[3];
     for (int k = 0; k < 3; k++) local[k] = k < s->box.dimension ? x[k] - s->box.lower[k] : 0;
     const double open = open_at(s, local, inside);
@@ -66,37 +66,39 @@ double tobi_sensor_occupancy(const tobi_system *s, const double x[3], int *insid
     return a.sum*c->volume*c->weight_correction/fmax(open, LEAST_OPEN);
 }
 
-static double look_along(const tobi_system *s, const double from[3], const double along[3], double t,
-                         int *inside)
+/* A line along which a fluid is looked for. */
+typedef struct line { const tobi_system *s; int fluid; const double *from, *along; } line;
+
+static double look_along(const line *l, double t, int *inside)
 {
     double x[3];
-    vec3_add_scaled(x, from, t, along);
-    return tobi_sensor_occupancy(s, x, inside);
+    vec3_add_scaled(x, l->from, t, l->along);
+    return tobi_sensor_occupancy(l->s, l->fluid, x, inside);
 }
 
 /* Between a wet place and one that is not. */
-static double find_end(const tobi_system *s, const double from[3], const double along[3], double wet,
-                       double dry)
+static double find_end(const line *l, double wet, double dry)
 {
     for (int k = 0; k < 12; k++) {
         int inside;
         const double middle = 0.5*(wet + dry);
-        if (look_along(s, from, along, middle, &inside) >= WET) wet = middle;
+        if (look_along(l, middle, &inside) >= WET) wet = middle;
         else dry = middle;
     }
     return 0.5*(wet + dry);
 }
 
-double tobi_sensor_column(const tobi_system *s, const double from[3], const double along[3], double length,
-                          double *floor_at)
+double tobi_sensor_column(const tobi_system *s, int fluid, const double from[3], const double along[3],
+                          double length, double *floor_at)
 {
+    const line l = { s, fluid, from, along };
     const double step = STEP*s->smoothing.spacing, stands = STANDS*s->smoothing.spacing;
     double solid = 0, end = -1, last_wet = -1;       /* solid: the last place of something to stand on */
     int apart = 0;                                   /* 1: something else than solids has been passed */
     *floor_at = 0;
     for (int k = 0; ; k++) {
         int inside;
-        const double t = fmin(k*step, length), phi = look_along(s, from, along, t, &inside);
+        const double t = fmin(k*step, length), phi = look_along(&l, t, &inside);
         if (inside) {
             solid = t;
             if (!apart) *floor_at = t;
@@ -104,7 +106,7 @@ double tobi_sensor_column(const tobi_system *s, const double from[3], const doub
             apart |= t - solid > 2*step;
             const int joined = last_wet >= 0 && t - last_wet < 1.5*step;
             if (phi >= WET && (joined || t - solid <= stands)) last_wet = end = t;
-            else if (joined && phi < WET && last_wet > solid) return find_end(s, from, along, last_wet, t);
+            else if (joined && phi < WET && last_wet > solid) return find_end(&l, last_wet, t);
         }
         if (t >= length) return end;
         if (!inside && t - solid > stands && !(last_wet >= 0 && t - last_wet < 1.5*step) &&
@@ -126,12 +128,12 @@ int tobi_sensor_up(const tobi_system *s, double *sign)
     return axis;
 }
 
-double tobi_sensor_level(const tobi_system *s, const double x[3])
+double tobi_sensor_level(const tobi_system *s, int fluid, const double x[3])
 {
     double from[3] = { x[0], x[1], s->box.dimension == 3 ? x[2] : 0 }, along[3] = { 0 }, sign, floor_at;
     const int axis = tobi_sensor_up(s, &sign);
     from[axis] = s->box.lower[axis] + (sign > 0 ? 0 : s->box.size[axis]);
     along[axis] = sign;
-    const double top = tobi_sensor_column(s, from, along, s->box.size[axis], &floor_at);
+    const double top = tobi_sensor_column(s, fluid, from, along, s->box.size[axis], &floor_at);
     return from[axis] + sign*(top >= 0 ? top : floor_at);
 }

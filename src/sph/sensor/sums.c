@@ -14,6 +14,7 @@ enum { PLACES = 64 };       /* of a patch along one side, at most */
 typedef struct sums {
     const tobi_system *s;
     const tobi_sensor_box *box;
+    int fluid;                     /* -1: all */
     const double *velocity, *spin;
     double arm[3];                 /* from the middle back to the centre of the turn, m */
     double total;
@@ -41,16 +42,15 @@ static double share_of(const sums *a, const double d[3], int axes)
 
 static void add_volume(void *user, int64_t i, const double d[3])
 {
-    (void)i;
     sums *a = user;
-    a->total += share_of(a, d, 3)*a->s->smoothing.volume;
+    if (tobi_sensor_counts(a->s, a->fluid, i)) a->total += share_of(a, d, 3)*a->s->smoothing.volume;
 }
 
 static void add_flow(void *user, int64_t i, const double d[3])
 {
     sums *a = user;
     const double reach = LAYER*a->s->smoothing.spacing, away = fabs(pick(a->box->axis[2], d));
-    if (away >= reach) return;
+    if (away >= reach || !tobi_sensor_counts(a->s, a->fluid, i)) return;
     const tobi_float4 *v = &a->s->particles.velocity[i];
     double r[3], turn[3];
     for (int k = 0; k < 3; k++) r[k] = d[k] + a->arm[k];
@@ -78,17 +78,17 @@ static void visit_box(const tobi_system *s, const tobi_sensor_box *box, double r
     sph_visit(s, local, &r, see, user);
 }
 
-double tobi_sensor_volume(const tobi_system *s, const tobi_sensor_box *box)
+double tobi_sensor_volume(const tobi_system *s, int fluid, const tobi_sensor_box *box)
 {
-    sums a = { .s = s, .box = box };
+    sums a = { .s = s, .box = box, .fluid = fluid };
     visit_box(s, box, 2*s->smoothing.spacing, add_volume, &a);
     return a.total;
 }
 
-double tobi_sensor_flow(const tobi_system *s, const tobi_sensor_box *box, const double velocity[3],
+double tobi_sensor_flow(const tobi_system *s, int fluid, const tobi_sensor_box *box, const double velocity[3],
                         const double spin[3], const double centre[3])
 {
-    sums a = { .s = s, .box = box, .velocity = velocity, .spin = spin };
+    sums a = { .s = s, .box = box, .fluid = fluid, .velocity = velocity, .spin = spin };
     vec3_sub(a.arm, box->middle, centre);
     visit_box(s, box, (LAYER + 2)*s->smoothing.spacing, add_flow, &a);
     return a.total;
