@@ -130,8 +130,8 @@ static tobi_status find_fluid(const tobi_world *w, const tobi_probe_def *def, in
     *fluid = -1;
     if (!def->fluid) return TOBI_OK;
     if (def->kind == TOBI_PROBE_POINT || def->kind == TOBI_PROBE_PATCH)
-        return tobi_fail(err, TOBI_INVALID, "probe '%s': a point or patch feels what is there; a fluid is for a "
-                         "level, a run-up, a flow or a volume", def->name);
+        return tobi_fail(err, TOBI_INVALID, "probe '%s': a point or patch feels what is there; a fluid is "
+                         "for a level, a run-up, a flow or a volume", def->name);
     for (int f = 0; f < s->fluid_count; f++)
         if (strcmp(s->fluid[f].name, def->fluid) == 0) *fluid = f;
     if (*fluid >= 0) return TOBI_OK;

@@ -527,7 +527,8 @@ static void a_sensor_is_of_one_fluid(void **state)
     set_sizes(&volume, 0.1, 0, 0.18);
     set_sizes(&flow, 0.18, 0, 0);
     level.fluid = "air";
-    REFUSED(tobi_world_add_probe(world, &level, &err), TOBI_NOT_FOUND, "of the fluid 'air', which is not there");
+    REFUSED(tobi_world_add_probe(world, &level, &err), TOBI_NOT_FOUND,
+            "of the fluid 'air', which is not there");
     OK(tobi_world_add_fluid(world, &air, &fill, 1, &err));
     OK(tobi_world_start(world, &err));
     set_field(world, "velocity", 3, two_along_x);

@@ -14,7 +14,12 @@
 #define INSIDE 0.25         /* deeper than this a place is inside of a body, spacings */
 #define LEAST_OPEN 0.2      /* share of the kernel that a corner leaves at least */
 
-typedef struct share { const tobi_system *s; const tobi_smoothing_constants *c; int fluid; double sum; } share;
+typedef struct share {
+    const tobi_system *s;
+    const tobi_smoothing_constants *c;
+    int fluid;
+    double sum;
+} share;
 
 static void add_share(void *user, int64_t i, const double d[3])
 {

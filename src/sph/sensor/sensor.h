@@ -1,6 +1,6 @@
 /* Sensors that look at more than a point: levels, run-ups, patches of walls, flows, volumes. Serial, between
-   two steps; positions may have moved since the last sort by less than a spacing. `fluid` is the number of the
-   one that counts, -1 for all. */
+   two steps; positions may have moved since the last sort by less than a spacing. `fluid` is the number of
+   the one that counts, -1 for all. */
 #pragma once
 #include "core/system.h"
 
