@@ -12,7 +12,8 @@ case = Case("swimmer", "A free swimmer", """
 The scene eel: shape and body wave of the two-dimensional anguilliform swimmer of Kern & Koumoutsakos (J. Exp. Biol. 209,
 2006), L = 1 m, T = 1 s, 0.14 Pa s, from rest in a periodic box of 5 by 2 L. Published, for an unbounded liquid: a mean
 speed of 0.54 L/T, Re = U L/nu = 3900. Speed: the way of the centre of mass over the last two beats. Momentum of eel and
-water together along the way, over the eel's largest: nothing outside acts. Without water: test_swimmer, a body that bends
+water together along the way, over the eel's largest: nothing outside acts. Power: what the change of shape gives over the last
+two beats. Energy: that of eel and water at the end over all that was given; viscosity takes the rest. Without water: test_swimmer, a body that bends
 and twists for 400 steps, momenta per mass from the places of its mass.""", methods=("isph",))
 
 U = 0.54
@@ -37,7 +38,12 @@ def swim(label, spacing, end, *options):
     def speed(first, beats):
         a, b = (min(range(len(t)), key=lambda k: abs(t[k] - at)) for at in (first, first + beats))
         return math.hypot(x[b] - x[a], y[b] - y[a])/(t[b] - t[a])
-    return {"speed": speed, "together": max(together)/(mass*max(abs(v) for v in eel["velocity_x"])),
+
+    def power(first, beats):
+        a, b = (min(range(len(t)), key=lambda k: abs(t[k] - at)) for at in (first, first + beats))
+        return (eel["motion_work"][b] - eel["motion_work"][a])/(t[b] - t[a])
+    left = (eel["kinetic_energy"][-1] + history["kinetic_energy"][-1])/eel["motion_work"][-1]
+    return {"speed": speed, "power": power, "left": left, "together": max(together)/(mass*max(abs(v) for v in eel["velocity_x"])),
             "x": x, "y": y}
 
 
@@ -52,9 +58,11 @@ if case.smoke:
     run = swim("small", 0.04, 1.6, *small)
     # Four particles across the head, started from rest: it has not reached its speed.
     case.hold("the eel swims ahead at 0.2 to 0.6 L/T in its second beat", 0.2 <= run["speed"](0.6, 1) <= 0.6)
+    # All that is given is in eel and water, but for what viscosity takes.
+    case.hold(f"eel and water have 0.2 to 1 of the energy that was given ({run['left']:.3f})", 0.2 <= run["left"] <= 1)
     case.hold("and moves aside by less than a tenth of its length", abs(run["y"][-1] - run["y"][0]) < 0.1)
 else:
-    speeds = {}
+    speeds, powers = {}, {}
     for spacing in (0.02, 0.0125):
         run = swim(f"eel_{spacing:g}", spacing, 7)
         label = f"{spacing*1000:g} mm"
@@ -63,9 +71,14 @@ else:
         change = run["speed"](6, 1)/run["speed"](5, 1) - 1
         case.figure(f"{label}: change of speed from beat to beat", change, "within 0.02", abs(change) <= 0.02)
         case.state(f"{label}: Strouhal number of the wave, 2 x 0.125 L/(U T)", 0.25/speeds[spacing])
+        powers[spacing] = run["power"](5, 2)
+        case.state(f"{label}: power, W per metre of depth", powers[spacing])
+        case.state(f"{label}: energy of eel and water at the end over that given", run["left"])
         case.figure(f"{label}: momentum of all over the eel's", run["together"], "<= 1e-3", run["together"] <= 1e-3)
     change = speeds[0.02]/speeds[0.0125] - 1
     case.figure("speed at 20 mm over that at 12.5 mm, less 1", change, "within 0.05", abs(change) <= 0.05)
+    change = powers[0.02]/powers[0.0125] - 1
+    case.figure("power at 20 mm over that at 12.5 mm, less 1", change, "within 0.1", abs(change) <= 0.1)
 if case.smoke:
     case.figure("momentum of all over the eel's", run["together"], "<= 1e-3", run["together"] <= 1e-3)
 case.plot("Speed", "t, s", "m/s", curves)
