@@ -88,6 +88,8 @@ def check_age(root):
     expect("a page says how it was made", made)
     expect("a new page is not old", "older" not in read(root) and "to be made" in tool(root, "list")[0])
     expect("nothing to do", tool(root, "list")[0].strip().startswith("0 of 1 pages"))
+    change(root, "docs/validation/wave.md", " cores. Of", " cores.\nOf")      # a longer name of the machine
+    expect("a line ends behind the machine", tool(root, "list")[0].strip().startswith("0 of 1 pages"))
     change(root, "test/golden/hashes.csv", "bb", "cc")
     expect("results of another method", tool(root, "list")[0].strip().startswith("0 of 1 pages"))
     (root / "test/golden/later.json").write_text("{}")

@@ -19,7 +19,7 @@ import sys
 import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-MADE = re.compile(r"^Made by commit (\S+?)(?:, program (\w+), in ([\d.]+) min)? on (.*?)\. (.*?)\n\n", re.M | re.S)
+MADE = re.compile(r"^Made by commit (\S+?)(?:, program (\w+), in ([\d.]+) min)? on (.*?)\.\s(.*?)\n\n", re.M | re.S)
 STAMPS = re.compile(r"(case|method \w+) ([0-9a-f]{12})")
 OLDER = re.compile(r"^> \*\*.*\n(?:> .*\n)*\n", re.M)
 ROW = re.compile(r"^\| (?!figure )(.*) \| (.*) \| (.*) \| (met|\*\*missed\*\*|stated) \|$", re.M)
