@@ -97,6 +97,7 @@ class World:
     """
 
     _handle = None
+    _busy = False
 
     def __init__(self, scene, set=None, name=None):
         self._raised, self._motions = None, {}
@@ -139,6 +140,8 @@ class World:
 
     @property
     def _world(self):
+        if self._busy:
+            raise Error("the world is in a call: functions that it asks, and other threads, must not use it")
         if self._handle is None:
             raise Error("the world is closed")
         return self._handle
@@ -148,9 +151,12 @@ class World:
 
     def _call(self, function, *arguments):
         """A call with this world; what a Python function raised in it comes out as it was."""
-        error = ffi.new("tobi_error *")
-        self._raised = None
-        status = function(self._world, *arguments, error)
+        error, world = ffi.new("tobi_error *"), self._world
+        self._raised, self._busy = None, True
+        try:
+            status = function(world, *arguments, error)
+        finally:
+            self._busy = False
         raised, self._raised = self._raised, None
         if raised is not None:
             raise raised
@@ -182,7 +188,7 @@ class World:
     def close(self):
         """Frees the memory. The world cannot be used afterwards."""
         if self._handle is not None:
-            lib.tobi_world_destroy(self._handle)
+            lib.tobi_world_destroy(self._world)
             lib.tobi_scene_free(self._scene)
         self._handle = None
 

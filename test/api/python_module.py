@@ -165,6 +165,16 @@ class Module(unittest.TestCase):
                 world.bodies["flap"].set_motion(lambda t, rest: rest[1:])
                 world.step()
 
+    def test_a_motion_must_not_use_its_world(self):
+        with tobiuo.World(with_bodies(FLAP)) as world:
+            world.start()
+            uses = (lambda: world.time, lambda: world.step(), lambda: world.read("position"), lambda: world.close())
+            for use in uses:
+                world.bodies["flap"].set_motion(lambda t, rest, use=use: (use() if t > 0.01 else 0, rest)[1])
+                with self.assertRaisesRegex(tobiuo.Error, "in a call"):
+                    world.advance(world.time + 0.02)
+                world.bodies["flap"].set_motion(lambda t, rest: rest)
+
     def test_control_c_stops_between_two_steps(self):
         with tobiuo.World(POOL) as world, tobiuo.World(POOL) as other:
             world.start()
