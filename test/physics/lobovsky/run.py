@@ -17,7 +17,7 @@ floor, below the lowest particle of this run: stated only. Its goal is for a 2-D
 2.5 mm, as it is and behind a gate, which the experiment has and these runs otherwise lack. Its speed is not in the data; 3 m/s is a guess.
 Levels and pressures of the experiment do not share one clock: by the gauges the front does the 0.25 m from H3 to H4 in T = 0.53, and
 then the 0.25 m to the wall in T = 0.18. The signals of P3 and P4 are doubtful: P3 reads more than P1 and P2 from T = 2.75 to 3.1, and at
-T = 3.4 to 4 the head at P4, p + rho g z, is 0.83 and that at P1 to P3 0.76, 0.73 and 0.69.""")
+T = 3.4 to 4 the head at P4, p + rho g z, is 0.83 and that at P1 to P3 0.76, 0.73 and 0.69.""", methods=("isph",))
 
 H, G = 0.3, 9.81
 TO_T = (G/H)**0.5
