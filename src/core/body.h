@@ -41,6 +41,10 @@ enum { TOBI_DRY, TOBI_WET, TOBI_WET_GAP, TOBI_BURIED };
 /* Of the spacing of quadrature points, half that of the particles. */
 #define TOBI_THICK 1.8
 
+/* What does work on a body: fluids and solids; what touches it; its motion; its force, torque and control
+   program. */
+enum { TOBI_BY_PARTICLES, TOBI_BY_CONTACT, TOBI_BY_MOTION, TOBI_BY_FORCE, TOBI_POWERS };
+
 typedef struct tobi_body {
     char name[64];
     tobi_mesh mesh;                  /* rest pose, world coordinates                           */
@@ -118,9 +122,7 @@ typedef struct tobi_body {
     double start[9];                 /* m/s, rad/s, kg m2/s: velocities and angular momentum, when the step
                                         began                                                  */
     double touch_power;              /* W, of contact, as tobi_body_load.shape                 */
-    double power[3];                 /* W: that particles, contact, and its motion give it;
-                                        tobi_body_find_power                                   */
-    double force_power;              /* W: of its constant force and control program, the same */
+    double power[TOBI_POWERS];       /* W: that each gives it; tobi_body_find_power            */
     tobi_body_info info;             /* its forces: tobi_body_sum_loads                        */
 } tobi_body;
 

@@ -71,11 +71,13 @@ void tobi_body_find_power(tobi_body *b, double dt)
     tobi_body_mean_velocity(b, mean);
     const double *u = driven && b->deforms ? b->start : mean;
     for (int k = 0; b->deforms && k < TOBI_SYSTEM_LIMIT; k++) shape += b->load[k].shape;
-    b->force_power = vec3_dot(b->rigid.given, mean) + vec3_dot(b->rigid.given + 3, mean + 3);
-    b->power[0] = vec3_dot(i->pressure_force, u) + vec3_dot(i->viscous_force, u) +
-                  vec3_dot(i->pressure_torque, u + 3) + vec3_dot(i->viscous_torque, u + 3) + shape;
-    b->power[1] = vec3_dot(i->contact_force, mean) + vec3_dot(i->contact_torque, mean + 3) + b->touch_power;
-    b->power[2] = driven ? -b->power[0] : b->swimmer ? find_swimming(b, shape, dt) : 0;
+    const double by_particles = vec3_dot(i->pressure_force, u) + vec3_dot(i->viscous_force, u) +
+                                vec3_dot(i->pressure_torque, u + 3) + vec3_dot(i->viscous_torque, u + 3) + shape;
+    b->power[TOBI_BY_PARTICLES] = by_particles;
+    b->power[TOBI_BY_CONTACT] = vec3_dot(i->contact_force, mean) + vec3_dot(i->contact_torque, mean + 3) +
+                                b->touch_power;
+    b->power[TOBI_BY_MOTION] = driven ? -by_particles : b->swimmer ? find_swimming(b, shape, dt) : 0;
+    b->power[TOBI_BY_FORCE] = vec3_dot(b->rigid.given, mean) + vec3_dot(b->rigid.given + 3, mean + 3);
 }
 
 /* What is rounding alone in 2-D: the force along z and the torques about x and y. */

@@ -52,12 +52,12 @@
     H("body_potential_energy", "J", real, e->potential, "Theirs, in gravity, against the lower corner.") \
     H("spring_energy", "J", real, e->springs, \
       "In springs of joints, hinges and guides, and in lines, with the weight of catenaries.") \
-    H("motion_work", "J", real, tobi_works_motions(run), \
+    H("motion_work", "J", real, tobi_works_bodies(run, TOBI_BY_MOTION), \
       "Done by motions of bodies on fluids and solids, by swimmers also on themselves, since the start.") \
     H("joint_work", "J", real, tobi_works_joints(run), \
       "Taken from bodies by dampers and motors of joints since the start; below 0: motors drive.") \
     H("line_work", "J", real, run->works.lines, "Taken by the damping of lines since the start.") \
-    H("force_work", "J", real, tobi_works_forces(run), \
+    H("force_work", "J", real, tobi_works_bodies(run, TOBI_BY_FORCE), \
       "Done on bodies by their constant forces and torques and by control programs since the start.") \
     H("elastic_energy", "J", real, i->elastic_energy, "Stored in solids and compressed liquids of mlsmpm.") \
     H("work_bodies", "J", real, i->work_bodies, \
@@ -130,14 +130,14 @@
     B("kinetic_energy", "J", e.kinetic, "Of the centre of mass and of the turn; 0 of a prescribed body.") \
     B("potential_energy", "J", e.potential, \
       "In gravity, against the lower corner of the domain; 0 of a prescribed body.") \
-    B("work", "J", work[0], \
+    B("work", "J", work[TOBI_BY_PARTICLES], \
       "Done on it by fluids and solids since the start: by pressure_force, viscous_force and their " \
       "torques, and by what a change of its shape adds.") \
-    B("contact_work", "J", work[1], "Done on it by bodies and sides that touch it since the start.") \
-    B("motion_work", "J", work[2], \
+    B("contact_work", "J", work[TOBI_BY_CONTACT], "Done on it by bodies and sides that touch it since the start.") \
+    B("motion_work", "J", work[TOBI_BY_MOTION], \
       "Given by its motion since the start: of a prescribed body what fluids and solids take; of a swimmer " \
       "what its change of shape gives to all that it touches, and to its turn.") \
-    B("force_work", "J", run->works.force[k], \
+    B("force_work", "J", work[TOBI_BY_FORCE], \
       "Done on it by force and torque of the scene and by those of its control program since the start.")
 
 /* The last columns of bodies.csv, which it has in 2-D alone. */

@@ -33,9 +33,9 @@ enum { TOBI_BODY_FORCES = 7 };
 typedef struct tobi_body_tally { double time, impulse[TOBI_BODY_FORCES][3]; } tobi_body_tally;
 typedef struct tobi_solid_tally { double time, impulse[3]; } tobi_solid_tally;    /* of liquids */
 
-/* Work since the start, J: on each body by particles and by contact, taken by each joint, by all lines; in
-   2-D how far each body has turned, rad; on each body by its constant force and control program. */
-typedef struct tobi_works { double (*body)[3], *joint, lines, *angle, *force; } tobi_works;
+/* Work since the start, J: of each body as tobi_body.power, taken by each joint, by all lines; in 2-D how far
+   each body has turned, rad. */
+typedef struct tobi_works { double (*body)[TOBI_POWERS], *joint, lines, *angle; } tobi_works;
 
 /* One field to write. */
 typedef struct tobi_record_field {
@@ -211,13 +211,13 @@ int64_t tobi_tables_waiting(const tobi_run *run);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
 void tobi_tally_bodies(tobi_run *run, double dt);
 void tobi_tally_solids(tobi_run *run, double dt);
-/* works.c: room for them; 0: there is no memory. What a step did; the work of bodies with a motion. */
+/* works.c: room for them; 0: there is no memory. What a step did; the work on all bodies by
+   one of TOBI_BY_PARTICLES ..., and of all joints. */
 bool tobi_works_open(tobi_run *run);
 void tobi_works_free(tobi_run *run);
 void tobi_works_add(tobi_run *run, double dt);
-double tobi_works_motions(const tobi_run *run);
+double tobi_works_bodies(const tobi_run *run, int by);
 double tobi_works_joints(const tobi_run *run);
-double tobi_works_forces(const tobi_run *run);
 /* For checkpoints; older ones have none: json NULL, works count from there on. */
 struct json_t *tobi_works_to_json(const tobi_run *run);
 bool tobi_works_from_json(const struct json_t *json, tobi_run *run);

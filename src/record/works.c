@@ -23,9 +23,8 @@ bool tobi_works_open(tobi_run *run)
     run->works.body = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->works.body);
     run->works.joint = calloc((size_t)tobi_world_joint_count(run->world) + 1, sizeof *run->works.joint);
     run->works.angle = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->works.angle);
-    run->works.force = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->works.force);
     if (run->works.angle) follow_turns(run);
-    return run->works.body && run->works.joint && run->works.angle && run->works.force;
+    return run->works.body && run->works.joint && run->works.angle;
 }
 
 void tobi_works_free(tobi_run *run)
@@ -33,7 +32,6 @@ void tobi_works_free(tobi_run *run)
     free(run->works.body);
     free(run->works.joint);
     free(run->works.angle);
-    free(run->works.force);
 }
 
 void tobi_works_add(tobi_run *run, double dt)
@@ -41,19 +39,16 @@ void tobi_works_add(tobi_run *run, double dt)
     tobi_works *w = &run->works;
     tobi_joint_info joint;
     for (int k = 0; k < tobi_world_body_count(run->world); k++)
-        for (int by = 0; by < 3; by++) w->body[k][by] += dt*run->world->sim.bodies[k].power[by];
-    for (int k = 0; k < tobi_world_body_count(run->world); k++)
-        w->force[k] += dt*run->world->sim.bodies[k].force_power;
+        for (int by = 0; by < TOBI_POWERS; by++) w->body[k][by] += dt*run->world->sim.bodies[k].power[by];
     for (int k = 0; tobi_world_joint(run->world, k, &joint); k++) w->joint[k] += dt*joint.power;
     w->lines += dt*tobi_energy_line_power(run->world);
     follow_turns(run);
 }
 
-double tobi_works_motions(const tobi_run *run)
+double tobi_works_bodies(const tobi_run *run, int by)
 {
     double sum = 0;
-    for (int k = 0; k < tobi_world_body_count(run->world); k++)
-        sum += run->works.body[k][2];
+    for (int k = 0; k < tobi_world_body_count(run->world); k++) sum += run->works.body[k][by];
     return sum;
 }
 
@@ -64,27 +59,20 @@ double tobi_works_joints(const tobi_run *run)
     return sum;
 }
 
-double tobi_works_forces(const tobi_run *run)
-{
-    double sum = 0;
-    for (int k = 0; k < tobi_world_body_count(run->world); k++) sum += run->works.force[k];
-    return sum;
-}
-
 json_t *tobi_works_to_json(const tobi_run *run)
 {
-    json_t *bodies = json_array(), *joints = json_array(), *angles = json_array(), *forces = json_array();
-    for (int k = 0; k < tobi_world_body_count(run->world); k++)
-        json_array_append_new(bodies, json_pack("[f, f, f]", run->works.body[k][0], run->works.body[k][1],
-                                                run->works.body[k][2]));
+    json_t *bodies = json_array(), *joints = json_array(), *angles = json_array();
+    for (int k = 0; k < tobi_world_body_count(run->world); k++) {
+        json_t *row = json_array();
+        for (int by = 0; by < TOBI_POWERS; by++) json_array_append_new(row, json_real(run->works.body[k][by]));
+        json_array_append_new(bodies, row);
+    }
     for (int k = 0; k < tobi_world_body_count(run->world); k++)
         json_array_append_new(angles, json_real(run->works.angle[k]));
-    for (int k = 0; k < tobi_world_body_count(run->world); k++)
-        json_array_append_new(forces, json_real(run->works.force[k]));
     for (int k = 0; k < tobi_world_joint_count(run->world); k++)
         json_array_append_new(joints, json_real(run->works.joint[k]));
-    return json_pack("{s:o, s:o, s:o, s:o, s:f}", "bodies", bodies, "joints", joints, "angles", angles,
-                     "forces", forces, "lines", run->works.lines);
+    return json_pack("{s:o, s:o, s:o, s:f}", "bodies", bodies, "joints", joints, "angles", angles, "lines",
+                     run->works.lines);
 }
 
 bool tobi_works_from_json(const json_t *json, tobi_run *run)
@@ -92,20 +80,18 @@ bool tobi_works_from_json(const json_t *json, tobi_run *run)
     const size_t bodies = (size_t)tobi_world_body_count(run->world),
                  joints = (size_t)tobi_world_joint_count(run->world);
     const json_t *of_bodies = json_object_get(json, "bodies"), *of_joints = json_object_get(json, "joints"),
-                 *angles = json_object_get(json, "angles"), *lines = json_object_get(json, "lines"),
-                 *forces = json_object_get(json, "forces");          /* older checkpoints have none */
+                 *angles = json_object_get(json, "angles"), *lines = json_object_get(json, "lines");
     follow_turns(run);
     if (!json) return true;
     if (json_array_size(of_bodies) != bodies || json_array_size(of_joints) != joints) return false;
     if (!json_is_number(lines)) return false;
     run->works.lines = json_number_value(lines);
     for (size_t k = 0; k < bodies; k++)
-        for (size_t by = 0; by < 3; by++)
+        for (size_t by = 0; by < TOBI_POWERS; by++)
             run->works.body[k][by] = json_number_value(json_array_get(json_array_get(of_bodies, k), by));
     for (size_t k = 0; k < bodies; k++)
         run->works.angle[k] = json_number_value(json_array_get(angles, k));
     follow_turns(run);
-    for (size_t k = 0; k < bodies; k++) run->works.force[k] = json_number_value(json_array_get(forces, k));
     for (size_t k = 0; k < joints; k++)
         run->works.joint[k] = json_number_value(json_array_get(of_joints, k));
     return true;

@@ -9,8 +9,8 @@
 
 static tobi_body_energy find_energy(const tobi_world *w, const tobi_body *b)
 {
-    tobi_body_energy e = { .power = b->power[0], .contact_power = b->power[1], .motion_power = b->power[2] };
-    e.force_power = b->force_power;
+    tobi_body_energy e = { .power = b->power[TOBI_BY_PARTICLES], .contact_power = b->power[TOBI_BY_CONTACT],
+                           .motion_power = b->power[TOBI_BY_MOTION], .force_power = b->power[TOBI_BY_FORCE] };
     if (b->rigid.kind == TOBI_PRESCRIBED) return e;
     e.kinetic = tobi_rigid_kinetic_energy(&b->rigid);
     for (int a = 0; a < w->sim.def.dimension; a++)

@@ -75,7 +75,7 @@ def roll(layers):
 
 
 def roll_with_air(layers):
-    content = write_tank(layers, 1.6*PERIOD)
+    content = {"method": "isph", **write_tank(layers, 1.6*PERIOD)}
     content["fluids"].append({"name": "air", "density": 1.2, "viscosity": 1.8e-5, "visible": False,
                               "fill": [{"box": {"min": [0, DEPTH], "max": [LENGTH, HEIGHT]}}]})
     label, name = f"air_{layers}", f"with air, h/{layers}"
@@ -97,7 +97,7 @@ curves = []
 case.state("period of roll over that of the first mode by linear theory", PERIOD/first_mode())
 for layers in case.pick((8,), (12, 20)):
     roll(layers)
-if case.args.method == "isph":
+if not case.args.method:
     for layers in case.pick((8,), (12, 20, 30)):
         roll_with_air(layers)
 case.plot("Pressure on the left wall at the still level", "t, s", "mbar",
