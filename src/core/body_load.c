@@ -72,7 +72,8 @@ void tobi_body_find_power(tobi_body *b, double dt)
     const double *u = driven && b->deforms ? b->start : mean;
     for (int k = 0; b->deforms && k < TOBI_SYSTEM_LIMIT; k++) shape += b->load[k].shape;
     const double by_particles = vec3_dot(i->pressure_force, u) + vec3_dot(i->viscous_force, u) +
-                                vec3_dot(i->pressure_torque, u + 3) + vec3_dot(i->viscous_torque, u + 3) + shape;
+                                vec3_dot(i->pressure_torque, u + 3) + vec3_dot(i->viscous_torque, u + 3) +
+                                shape;
     b->power[TOBI_BY_PARTICLES] = by_particles;
     b->power[TOBI_BY_CONTACT] = vec3_dot(i->contact_force, mean) + vec3_dot(i->contact_torque, mean + 3) +
                                 b->touch_power;

@@ -133,7 +133,8 @@
     B("work", "J", work[TOBI_BY_PARTICLES], \
       "Done on it by fluids and solids since the start: by pressure_force, viscous_force and their " \
       "torques, and by what a change of its shape adds.") \
-    B("contact_work", "J", work[TOBI_BY_CONTACT], "Done on it by bodies and sides that touch it since the start.") \
+    B("contact_work", "J", work[TOBI_BY_CONTACT], \
+      "Done on it by bodies and sides that touch it since the start.") \
     B("motion_work", "J", work[TOBI_BY_MOTION], \
       "Given by its motion since the start: of a prescribed body what fluids and solids take; of a swimmer " \
       "what its change of shape gives to all that it touches, and to its turn.") \

@@ -64,7 +64,8 @@ json_t *tobi_works_to_json(const tobi_run *run)
     json_t *bodies = json_array(), *joints = json_array(), *angles = json_array();
     for (int k = 0; k < tobi_world_body_count(run->world); k++) {
         json_t *row = json_array();
-        for (int by = 0; by < TOBI_POWERS; by++) json_array_append_new(row, json_real(run->works.body[k][by]));
+        for (int by = 0; by < TOBI_POWERS; by++)
+            json_array_append_new(row, json_real(run->works.body[k][by]));
         json_array_append_new(bodies, row);
     }
     for (int k = 0; k < tobi_world_body_count(run->world); k++)
