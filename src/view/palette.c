@@ -155,6 +155,17 @@ void tobi_looks_color(const tobi_looks *looks, int material, int part, float col
     if (look->liquid) color[3] = share_of_liquid;
 }
 
+/* Whether a material is seen, and is no liquid of the kind of one that was before. */
+static int is_new(const tobi_looks *s, int material)
+{
+    const tobi_material_look *look = &s->materials[material];
+    for (int m = 0; m < material; m++) {
+        const tobi_material_look *other = &s->materials[m];
+        if (other->visible && other->liquid && look->liquid && other->kind == look->kind) return 0;
+    }
+    return look->visible;
+}
+
 tobi_status tobi_drawing_make_palette(tobi_drawing *d, const tobi_moment_field *id, tobi_error *err)
 {
     const tobi_looks *s = d->looks;
@@ -164,9 +175,9 @@ tobi_status tobi_drawing_make_palette(tobi_drawing *d, const tobi_moment_field *
     if (!d->palette) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     for (int m = 0; m < s->material_count; m++) {
         const tobi_material_look *look = &s->materials[m];
-        if (look->liquid && count_kinds(s, m) + 1 > kinds) kinds = count_kinds(s, m) + 1;
-        any_solid |= !look->liquid;
-        colored |= look->color[0] >= 0 || look->core_color[0] >= 0 || look->skin.image;
+        kinds += look->liquid && is_new(s, m);
+        any_solid |= look->visible && !look->liquid;
+        colored |= look->visible && (look->color[0] >= 0 || look->core_color[0] >= 0 || look->skin.image);
         for (int c = 0; c < PARTS*TINTS; c++)
             find_color(s, m, c%PARTS, c/PARTS, d->palette[m*PARTS*TINTS + c]);
     }

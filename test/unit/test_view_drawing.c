@@ -69,6 +69,26 @@ static void materials_have_looks(void **state)
     tobi_drawing_free(NULL);
 }
 
+/* Air that is not to be seen leaves the water its own looks: in 2-D its speed. */
+static void what_is_hidden_gives_no_colors(void **state)
+{
+    (void)state;
+    const tobi_view_def view = plain_view();
+    tobi_material_look two[2] = { LOOK(.color = { -1, -1, -1 }, .visible = 1, .liquid = 1),
+                                  LOOK(.color = { -1, -1, -1 }, .liquid = 1, .kind = 1) };
+    const tobi_looks before = looks;
+    looks.materials = two;
+    looks.material_count = 2;
+    looks.dimension = 2;
+    for (int seen = 0; seen < 2; seen++) {
+        two[1].visible = seen;
+        tobi_drawing *d = make(&view);
+        assert_true((tobi_drawing_picture(d)->label != NULL) == !seen);
+        tobi_drawing_free(d);
+    }
+    looks = before;
+}
+
 /* Neither has a colour: a solid beside a liquid must not look like it, a solid alone shows its speed. */
 static void solids_beside_liquids_have_colors(void **state)
 {
@@ -373,6 +393,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sizes_fit), cmocka_unit_test(materials_have_looks),
+        cmocka_unit_test(what_is_hidden_gives_no_colors),
         cmocka_unit_test(small_times_and_great_speeds),
         cmocka_unit_test(numbers_have_their_digits), cmocka_unit_test(numbers_at_axes_are_whole),
         cmocka_unit_test(solids_beside_liquids_have_colors), cmocka_unit_test(bodies_are_found_by_name),
