@@ -133,6 +133,8 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
 void tobi_body_free(tobi_body *b);
 /* 1 if any of the bodies is free or controlled. */
 int tobi_body_any_free(const tobi_body *bodies, int count);
+/* 1 if any of them changes its shape. */
+int tobi_body_any_deforms(const tobi_body *bodies, int count);
 /* Fills `outermost`, `convex` and `thick` of a body that has just been placed. outline.c */
 void tobi_body_find_outline(tobi_body *b, double point_spacing);
 /* Makes the centre of mass of the definition, if any, that of `rest`; notes one outside of the mesh. */

@@ -124,3 +124,10 @@ int tobi_body_any_free(const tobi_body *bodies, int count)
         if (bodies[k].rigid.kind != TOBI_PRESCRIBED) return 1;
     return 0;
 }
+
+int tobi_body_any_deforms(const tobi_body *bodies, int count)
+{
+    for (int k = 0; k < count; k++)
+        if (bodies[k].deforms) return 1;
+    return 0;
+}

@@ -175,9 +175,10 @@ double tobi_system_pushed_speed(const tobi_system *s)
     return fmin(narrow_speed(s, flow, fastest), sqrt(2*head/least));
 }
 
-/* Spacings in a step: what moves less is no runaway, though nothing seems to drive it. Motors, springs and
-   programs move bodies within the step, whose speed is known at its end. */
-static const double STILL = 0.1;
+/* Spacings in a step: what moves less is at rest but for rounding, though nothing drives it. Beside bodies
+   that move by forces it is no runaway: motors, springs and programs move them within the step, and their
+   speed is known at its end. */
+static const double STILL = 1e-6, STILL_BESIDE_BODIES = 0.1;
 
 /* m2/s2 */
 static double fall_head(const tobi_system *s)
@@ -194,5 +195,7 @@ double tobi_system_speed_scale(const tobi_system *s)
     const double fall = fall_head(s);
     const double brought = fmax(2*s->start_speed, fmax(inlet_speed(s), s->pushed_speed));
     const double scale = sqrt(2*fall + 8*tobi_system_capillary(s)) + s->sim->body_speed + brought;
-    return s->dt > 0 ? fmax(scale, STILL*s->smoothing.spacing/s->dt) : scale;
+    const int driven = tobi_body_any_free(s->sim->bodies, s->sim->body_count);
+    const double still = driven ? STILL_BESIDE_BODIES : STILL;
+    return s->dt > 0 ? fmax(scale, still*s->smoothing.spacing/s->dt) : scale;
 }

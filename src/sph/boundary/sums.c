@@ -135,8 +135,7 @@ static void sum_shape(const void *view, int64_t begin, int64_t end, double *t)
 /* isph finds what its pressure does by itself. */
 static void load_shapes(tobi_system *s)
 {
-    int any = 0;
-    for (int k = 0; k < s->sim->body_count; k++) any |= s->sim->bodies[k].deforms;
+    const int any = tobi_body_any_deforms(s->sim->bodies, s->sim->body_count);
     for (int viscous = sph_of(s)->mirrors != 0; any && viscous < 2; viscous++) {
         const reaction r = {s, viscous, 0};
         tobi_boundary_sum(s, TOBI_HOST(sum_shape, 1, 0), &r, 0);

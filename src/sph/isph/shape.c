@@ -70,9 +70,7 @@ void isph_shape_load(isph_solver *m, tobi_system *s)
 {
     shape_view v = { s, m, 0 };
     const tobi_boundary_links *n = &sph_of(s)->links;
-    int any = 0;
-    for (int k = 0; k < s->sim->body_count; k++) any |= s->sim->bodies[k].deforms;
-    if (!any) return;
+    if (!tobi_body_any_deforms(s->sim->bodies, s->sim->body_count)) return;
     tobi_boundary_sum(s, TOBI_HOST(sum_particles, 1, 0), &v, 0);
     for (v.body = 0; v.body < s->sim->body_count; v.body++) {
         tobi_body *b = &s->sim->bodies[v.body];
