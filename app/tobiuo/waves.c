@@ -25,7 +25,7 @@ enum { KEY_FROM = KEY_OWN, KEY_END, KEY_DEPTH };
 static const struct argp_option options[] = {
     { "gauges", 'g', "A,B,...", 0, "sensors in line, from the side that waves come from: tell the "
       "waves that go on and those that come back; may be repeated, behind a breakwater", 0 },
-    { "from", KEY_FROM, "S", 0, "use levels from this time on, s (0)", 0 },
+    { "from", KEY_FROM, "S", 0, "use levels from this time on, s (the start)", 0 },
     { "until", KEY_END, "S", 0, "and up to this time, s (the end)", 0 },
     { "depth", KEY_DEPTH, "M", 0, "of the water at the gauges, m (from the floor of the domain)", 0 },
     { "format", 'f', "FORMAT", 0, "of the picture: svg (default) or png", 0 },
