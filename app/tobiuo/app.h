@@ -15,7 +15,8 @@ enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_UNWRITTEN = 3, EXIT_INTERRUPTED = 13
 /* The commands. Their options are tables, for argp, the man page and the completion of words alike. */
 extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp, view_argp,
                          report_argp, describe_argp, bench_argp, info_argp, scenes_argp, new_argp,
-                         inspect_argp, surface_argp, foam_argp, picture_argp, sweep_argp, waves_argp;
+                         inspect_argp, surface_argp, foam_argp, picture_argp, sweep_argp, waves_argp,
+                         sample_argp;
 int tobiuo_run(int argc, char **argv);
 int tobiuo_resume(int argc, char **argv);
 int tobiuo_plot(int argc, char **argv);
@@ -35,6 +36,7 @@ int tobiuo_scenes(int argc, char **argv);
 int tobiuo_new(int argc, char **argv);
 int tobiuo_sweep(int argc, char **argv);
 int tobiuo_waves(int argc, char **argv);
+int tobiuo_sample(int argc, char **argv);
 
 typedef struct command {
     const char *name, *arguments, *doc;
@@ -194,6 +196,10 @@ char *join_path(const char *dir, const char *name);
 int make_series_folder(const char *path);
 /* DIR/NAME.pvd, ParaView's list of DIR/NAME/NAME_000000.vtp, from output `first` on. The same codes. */
 int write_series_list(const char *dir, const char *name, const tobi_results *results, int64_t first);
+/* DIR/NAME.pvd of files FOLDERNAME_000000.ENDING, with FOLDER seen from DIR as "" or "foam/", of the outputs
+   from first to end - 1. The same codes. */
+typedef struct series { const char *dir, *folder, *name, *ending; int64_t first, end; } series;
+int write_list(const series *s, const tobi_results *results);
 
 /* surface.c: the name of a format, or NULL; the surfaces of each output, as tobiuo surface makes them, whose
    exit code is returned. */

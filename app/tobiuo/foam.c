@@ -1,7 +1,7 @@
 /* tobiuo foam DIR: spray, foam and bubbles of the liquids of a finished run, a file for each output.
    Drawback: what is between two outputs is guessed, so that outputs far apart make poor foam. */
 #define _GNU_SOURCE
-#include "app.h"
+#include "moment.h"
 #include "tobiuo/foam.h"
 #include "tobiuo/results.h"
 #include <math.h>
@@ -64,19 +64,13 @@ static void free_liquid(liquid *l)
     *l = (liquid){ 0 };
 }
 
-static const tobi_moment_field *find_field(const tobi_moment *m, const char *name)
-{
-    for (int k = 0; k < m->field_count; k++)
-        if (strcmp(m->fields[k].name, name) == 0) return &m->fields[k];
-    return NULL;
-}
-
 /* Of particles those of liquids, but for what waits in inlets. */
 static int take_liquid(const foam_options *o, const tobi_looks *looks, liquid *l)
 {
     const tobi_moment *m = &l->moment;
-    const tobi_moment_field *v = find_field(m, "velocity"), *id = find_field(m, "particle_id");
-    const tobi_moment_field *material = find_field(m, "material");
+    const tobi_moment_field *v = find_moment_field(m, "velocity");
+    const tobi_moment_field *id = find_moment_field(m, "particle_id");
+    const tobi_moment_field *material = find_moment_field(m, "material");
     const size_t room = (size_t)m->count + 1;
     if (!v || v->components != 3)
         return complain("the output of %s has no field 'velocity', which foam needs; output.fields of the "
@@ -100,56 +94,10 @@ static int take_liquid(const foam_options *o, const tobi_looks *looks, liquid *l
     return 0;
 }
 
-/* Of the points of bodies, which may be much nearer to each other than the water's, one in each cell as wide
-   as the spacing; the same ones at every output. */
-typedef struct thinned { int64_t of, count; int64_t *row; } thinned;
-typedef struct cell_row { int64_t cell[3], row; } cell_row;
-
-static int compare_cells(const void *a, const void *b)
-{
-    const cell_row *p = a, *q = b;
-    for (int k = 0; k < 3; k++)
-        if (p->cell[k] != q->cell[k]) return p->cell[k] < q->cell[k] ? -1 : 1;
-    return p->row < q->row ? -1 : p->row > q->row;
-}
-
-static int thin_bodies(double (*x)[3], int64_t count, double spacing, thinned *t)
-{
-    cell_row *cells = malloc((size_t)count*sizeof *cells + 1);
-    int64_t *row = realloc(t->row, (size_t)count*sizeof *row + 1);
-    if (row) t->row = row;
-    if (!cells || !row) {
-        free(cells);
-        return complain("out of memory");
-    }
-    for (int64_t i = 0; i < count; i++) {
-        cells[i].row = i;
-        for (int k = 0; k < 3; k++)
-            cells[i].cell[k] = (int64_t)floor(fmin(fmax(x[i][k]/spacing, -1e15), 1e15));
-    }
-    qsort(cells, (size_t)count, sizeof *cells, compare_cells);
-    t->of = count, t->count = 0;
-    for (int64_t i = 0; i < count; i++)
-        if (i == 0 || memcmp(cells[i].cell, cells[i - 1].cell, sizeof cells->cell) != 0)
-            row[t->count++] = cells[i].row;
-    free(cells);
-    return 0;
-}
-
 static int take_bodies(const tobi_results *results, int64_t k, double spacing, thinned *t, liquid *l)
 {
-    tobi_error err = { 0 };
-    int64_t count;
-    if (tobi_results_read_bodies(results, k, &l->solid, &count, &err) != TOBI_OK)
-        return complain("%s", err.text);
-    const int code = count != t->of ? thin_bodies(l->solid, count, spacing, t) : 0;
-    double (*kept)[3] = malloc((size_t)t->count*sizeof *kept + 1);
-    if (!kept && code == 0) return complain("out of memory");
-    for (int64_t i = 0; code == 0 && i < t->count; i++) memcpy(kept[i], l->solid[t->row[i]], sizeof *kept);
-    free(l->solid);
-    l->solid = kept;
-    l->water.solid_count = code == 0 ? t->count : 0;
-    l->water.solids = (const double (*)[3])kept;
+    const int code = take_body_points(results, k, spacing, t, &l->solid, &l->water.solid_count);
+    l->water.solids = (const double (*)[3])l->solid;
     return code;
 }
 

@@ -30,6 +30,8 @@ static const command commands[] = {
     { "surface", "DIR", "make the surfaces of a run, for ParaView, Blender and others", tobiuo_surface,
       &surface_argp },
     { "foam", "DIR", "make spray, foam and bubbles of a run, for its pictures", tobiuo_foam, &foam_argp },
+    { "sample", "DIR", "fields of a run at places: profiles along lines, grids, means over time",
+      tobiuo_sample, &sample_argp },
     { "report", "DIR", "write one page about a run: pictures, tables, what to trust", tobiuo_report,
       &report_argp },
     { "inspect", "SCENE", "write the neighbour search of a particle and the kernels as files", tobiuo_inspect,

@@ -27,16 +27,26 @@ int make_series_folder(const char *path)
 
 int write_series_list(const char *dir, const char *name, const tobi_results *results, int64_t first)
 {
+    char *before = NULL;
+    if (asprintf(&before, "%s/", name) < 0) exit(complain("out of memory"));
+    const series s = { dir, before, name, "vtp", first, tobi_results_count(results) };
+    const int code = write_list(&s, results);
+    free(before);
+    return code;
+}
+
+int write_list(const series *s, const tobi_results *results)
+{
     char *path = NULL, *part = NULL;
-    if (asprintf(&path, "%s/%s.pvd", dir, name) < 0 || asprintf(&part, "%s.part", path) < 0)
+    if (asprintf(&path, "%s/%s.pvd", s->dir, s->name) < 0 || asprintf(&part, "%s.part", path) < 0)
         exit(complain("out of memory"));
     unlink(part);
     FILE *file = fopen(part, "wx");
     if (file)
         fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n", file);
-    for (int64_t k = first; file && k < tobi_results_count(results); k++)
-        fprintf(file, "<DataSet timestep=\"%.17g\" name=\"%s\" file=\"%s/%s_%06lld.vtp\"/>\n",
-                tobi_results_time(results, k), name, name, name, (long long)k);
+    for (int64_t k = s->first; file && k < s->end; k++)
+        fprintf(file, "<DataSet timestep=\"%.17g\" name=\"%s\" file=\"%s%s_%06lld.%s\"/>\n",
+                tobi_results_time(results, k), s->name, s->folder, s->name, (long long)k, s->ending);
     if (file) fputs("</Collection>\n</VTKFile>\n", file);
     const int bad = !file || ferror(file);
     int code = (file && fclose(file) != 0) || bad || rename(part, path) != 0

@@ -2,7 +2,7 @@
    each output, or one glTF with all of them as an animation. Drawback: colours of skins without an image
    are means of particles, so that their edges are a spacing wide. */
 #define _GNU_SOURCE
-#include "app.h"
+#include "moment.h"
 #include "tobiuo/results.h"
 #include "tobiuo/surface.h"
 #include <math.h>
@@ -80,21 +80,10 @@ typedef struct input {
     int16_t *skin;
 } input;
 
-static const tobi_moment_field *find_field(const tobi_moment *m, const char *name)
-{
-    for (int k = 0; k < m->field_count; k++)
-        if (strcmp(m->fields[k].name, name) == 0) return &m->fields[k];
-    return NULL;
-}
-
 static int complain_field(const surface_options *o, const tobi_moment *m)
 {
-    char all[900] = "", name[200];
-    for (int k = 0; k < m->field_count; k++) {
-        const size_t used = strlen(all);
-        snprintf(name, sizeof name, ", %s", m->fields[k].name);
-        if (used + strlen(name) < sizeof all) strcat(all, name);
-    }
+    char all[900];
+    list_moment_fields(m, all, sizeof all);
     return complain("%s has no field '%s'; it has speed%s", o->dir, o->field, all);
 }
 
@@ -116,7 +105,8 @@ static int make_groups(input *in)
 {
     enum { MATERIALS = 264, GROUPS = 1 << 20 };
     const tobi_moment *m = &in->moment;
-    const tobi_moment_field *material = find_field(m, "material"), *piece = find_field(m, "piece");
+    const tobi_moment_field *material = find_moment_field(m, "material");
+    const tobi_moment_field *piece = find_moment_field(m, "piece");
     in->group = malloc((size_t)m->count*sizeof *in->group + 1);
     if (!in->group) return complain("out of memory");
     for (int64_t i = 0; i < m->count; i++) {
@@ -132,7 +122,7 @@ static int make_groups(input *in)
 static int make_spacing(input *in)
 {
     const tobi_moment *m = &in->moment;
-    const tobi_moment_field *material = find_field(m, "material");
+    const tobi_moment_field *material = find_moment_field(m, "material");
     if (!material || !tobi_looks_differ(&in->looks)) return 0;
     in->spacing = malloc((size_t)m->count*sizeof *in->spacing + 1);
     if (!in->spacing) return complain("out of memory");
@@ -145,7 +135,7 @@ static int make_spacing(input *in)
 static int make_speed(input *in)
 {
     const tobi_moment *m = &in->moment;
-    const tobi_moment_field *v = find_field(m, "velocity");
+    const tobi_moment_field *v = find_moment_field(m, "velocity");
     in->speed = v ? malloc((size_t)m->count*sizeof *in->speed + 1) : NULL;
     if (v && !in->speed) return complain("out of memory");
     for (int64_t i = 0; v && i < m->count; i++) {
@@ -159,7 +149,8 @@ static int make_speed(input *in)
 static int make_color(input *in)
 {
     const tobi_moment *m = &in->moment;
-    const tobi_moment_field *material = find_field(m, "material"), *part = find_field(m, "part");
+    const tobi_moment_field *material = find_moment_field(m, "material");
+    const tobi_moment_field *part = find_moment_field(m, "part");
     in->color = malloc(4*(size_t)m->count*sizeof *in->color + 1);
     if (!in->color) return complain("out of memory");
     for (int64_t i = 0; i < m->count; i++) {
@@ -184,10 +175,7 @@ static int take_fields(const surface_options *o, input *in)
         in->field[n++] = (tobi_surface_field){ "speed", 1, in->speed };
     for (int k = 0; k < m->field_count && n < TOBI_SURFACE_FIELD_LIMIT; k++) {
         const tobi_moment_field *f = &m->fields[k];
-        const int number = strstr(f->name, "_id") || strcmp(f->name, "material") == 0 ||
-                           strcmp(f->name, "part") == 0 || strcmp(f->name, "piece") == 0 ||
-                           strcmp(f->name, "cut_side") == 0;
-        if (o->field ? strcmp(o->field, f->name) == 0 : !number)
+        if (o->field ? strcmp(o->field, f->name) == 0 : !is_label_field(f->name))
             in->field[n++] = (tobi_surface_field){ f->name, f->components, f->values };
     }
     if (o->field && n == 0) return complain_field(o, m);
@@ -230,7 +218,8 @@ static int make_skins(input *in)
 static tobi_status make_surface(input *in, tobi_surface **s, tobi_error *err)
 {
     const tobi_moment *m = &in->moment;
-    const tobi_moment_field *material = find_field(m, "material"), *rest = find_field(m, "rest_position");
+    const tobi_moment_field *material = find_moment_field(m, "material");
+    const tobi_moment_field *rest = find_moment_field(m, "rest_position");
     if (!in->skins || !rest || rest->components != 3) return tobi_surface_make(&in->def, s, err);
     in->skin = malloc((size_t)m->count*sizeof *in->skin + 1);
     if (!in->skin) {

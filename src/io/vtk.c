@@ -234,9 +234,9 @@ static tobi_status check_triangles(const char *path, int64_t vertex_count, int64
     return TOBI_OK;
 }
 
+/* attributes: of the element that is named as the type, as " Origin=...", or "". */
 static tobi_status open_document(document *doc, const char *path, tobi_compression compression,
-                                 const char *type,
-                                 int array_room, tobi_error *err)
+                                 const char *type, const char *attributes, int array_room, tobi_error *err)
 {
     *doc = (document){ .compression = compression };
     if ((unsigned)compression > TOBI_ASCII)
@@ -253,8 +253,8 @@ static tobi_status open_document(document *doc, const char *path, tobi_compressi
     tobi_file_print(
         &doc->file,
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
-        "byte_order=\"LittleEndian\" header_type=\"UInt64\"%s>\n<%s>\n",
-        type, compressor, type);
+        "byte_order=\"LittleEndian\" header_type=\"UInt64\"%s>\n<%s%s>\n",
+        type, compressor, type, attributes);
     return TOBI_OK;
 }
 
@@ -340,7 +340,7 @@ tobi_status tobi_vtu_write(const char *path, tobi_compression compression, int64
     TOBI_TRY(check_arrays(path, arrays, array_count, n, err));
     if (n > 0 && !points) return tobi_fail(err, TOBI_INVALID, "%s: no points", path);
     document doc;
-    TOBI_TRY(open_document(&doc, path, compression, "UnstructuredGrid", array_count + 4, err));
+    TOBI_TRY(open_document(&doc, path, compression, "UnstructuredGrid", "", array_count + 4, err));
     tobi_status status = write_particles(&doc, n, points, arrays, array_count, err);
     return close_document(&doc, "UnstructuredGrid", status, err);
 }
@@ -374,7 +374,7 @@ tobi_status tobi_vtp_write(const char *path, tobi_compression compression, const
     TOBI_TRY(check_triangles(path, s->vertex_count, s->triangle_count, s->triangles, err));
     document doc;
     int arrays = s->point_array_count + s->cell_array_count + 3;
-    TOBI_TRY(open_document(&doc, path, compression, "PolyData", arrays, err));
+    TOBI_TRY(open_document(&doc, path, compression, "PolyData", "", arrays, err));
     tobi_status status = write_surface(&doc, s, err);
     return close_document(&doc, "PolyData", status, err);
 }
@@ -408,9 +408,45 @@ tobi_status tobi_vtp_write_cells(const char *path, tobi_compression compression,
         return tobi_fail(err, TOBI_INVALID, "%s: cells of %d points; allowed are 1 to 3", path, s->corners);
     if (s->count > 0 && !s->points) return tobi_fail(err, TOBI_INVALID, "%s: no points", path);
     document doc;
-    TOBI_TRY(open_document(&doc, path, compression, "PolyData", s->array_count + 3, err));
+    TOBI_TRY(open_document(&doc, path, compression, "PolyData", "", s->array_count + 3, err));
     tobi_status status = write_cells(&doc, s, err);
     return close_document(&doc, "PolyData", status, err);
+}
+
+static tobi_status write_image(document *doc, const tobi_vtk_image *s, const char *extent, int64_t rows,
+                               tobi_error *err)
+{
+    tobi_file_print(&doc->file, "<Piece Extent=\"%s\">\n", extent);
+    begin_point_data(&doc->file, s->arrays, s->array_count);
+    TOBI_TRY(add_arrays(doc, s->arrays, s->array_count, rows, err));
+    tobi_file_print(&doc->file, "</PointData>\n<CellData/>\n");
+    return TOBI_OK;
+}
+
+/* Numbers in the element itself are written here, without a locale's decimal mark: VTK reads a point. */
+static void print_triple(char *text, size_t room, const double v[3])
+{
+    snprintf(text, room, "%.17g %.17g %.17g", v[0], v[1], v[2]);
+    for (char *c = text; *c; c++)
+        if (*c == ',') *c = '.';
+}
+
+tobi_status tobi_vti_write(const char *path, tobi_compression compression, const tobi_vtk_image *s,
+                           tobi_error *err)
+{
+    char extent[128], origin[96], cell[96], attributes[400];
+    const int64_t rows = s->count[0]*s->count[1]*s->count[2];
+    TOBI_TRY(check_arrays(path, s->arrays, s->array_count, rows, err));
+    snprintf(extent, sizeof extent, "0 %" PRId64 " 0 %" PRId64 " 0 %" PRId64, s->count[0] - 1,
+             s->count[1] - 1, s->count[2] - 1);
+    print_triple(origin, sizeof origin, s->origin);
+    print_triple(cell, sizeof cell, s->cell);
+    snprintf(attributes, sizeof attributes, " WholeExtent=\"%s\" Origin=\"%s\" Spacing=\"%s\"", extent,
+             origin, cell);
+    document doc;
+    TOBI_TRY(open_document(&doc, path, compression, "ImageData", attributes, s->array_count + 1, err));
+    const tobi_status status = write_image(&doc, s, extent, rows, err);
+    return close_document(&doc, "ImageData", status, err);
 }
 
 tobi_status tobi_stl_write(const char *path, int64_t vertex_count, const double (*vertices)[3],

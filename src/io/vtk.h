@@ -1,6 +1,6 @@
-/* ParaView files: particles (VTU) and surfaces (VTP, STL); lists of them are in io/pvd.h.
+/* ParaView files: particles (VTU), surfaces (VTP, STL), grids (VTI); lists of them are in io/pvd.h.
 
-   VTU and VTP hold appended raw binary with a UInt64 header, optionally compressed in blocks by
+   VTU, VTP and VTI hold appended raw binary with a UInt64 header, optionally compressed in blocks by
    zlib or LZ4, or ASCII. Source: the VTK XML file format as its own readers define it. Every file
    appears whole or not at all (base/file.h). Failures: TOBI_IO with path and reason, TOBI_INVALID for
    arguments that no file can hold. Arrays are borrowed for the call. Names and file names are UTF-8
@@ -50,6 +50,17 @@ typedef struct tobi_vtk_cells {
 } tobi_vtk_cells;
 tobi_status tobi_vtp_write_cells(const char *path, tobi_compression compression, const tobi_vtk_cells *cells,
                                  tobi_error *err);
+
+/* Numbers at the points of a regular grid, x running fastest. */
+typedef struct tobi_vtk_image {
+    double origin[3], cell[3];              /* m, the first point, the distances of points */
+    int64_t count[3];                       /* points along each axis        */
+    const tobi_vtk_array *arrays;           /* a row for each point          */
+    int array_count;
+} tobi_vtk_image;
+/* Writes it as VTI; the failures of tobi_vtp_write. */
+tobi_status tobi_vti_write(const char *path, tobi_compression compression, const tobi_vtk_image *image,
+                           tobi_error *err);
 
 /* Binary STL: little-endian floats, normals by the right-hand rule. At most 2^32 - 1 triangles. */
 tobi_status tobi_stl_write(const char *path, int64_t vertex_count, const double (*vertices)[3],

@@ -2,14 +2,14 @@
    the particles around. With a clip plane they lie in it. Drawback: seeds are tried one after the other, on
    one thread, so that lines do not depend on the number of threads. */
 #include "view/streamlines.h"
+#include "view/weight.h"
 #include <stdlib.h>
 #include <string.h>
 
 enum { MOST_STEPS = 4000, MOST_BINS = 1 << 22 };
 static const double STEP = 0.4;          /* spacings                                       */
 static const double SLOW = 1e-3;         /* of the largest speed: nothing moves            */
-static const double FULL[2] = { 4.189, 7.660 };      /* sums of weights in full liquid, 2-D and 3-D */
-static const double THIN = 0.6;          /* of it: the liquid ends                         */
+static const double THIN = 0.6;          /* of full liquid: it ends                        */
 
 /* Points in bins of an edge. */
 typedef struct bins {
@@ -93,7 +93,7 @@ static bool add_particle(void *user, int32_t i)
     const double reach2 = 4*t->spacing*t->spacing;
     const double r2 = distance2(m->x, t->f->positions[i], t->dimension);
     if (!(r2 < reach2)) return false;
-    const double one = 1 - r2/reach2, w = one*one;
+    const double w = view_weight(r2, reach2);
     m->weight += w;
     for (int a = 0; a < t->dimension; a++) m->v[a] += w*t->f->flow[i][a];
     return false;
@@ -107,7 +107,7 @@ static bool find_direction(const tracer *t, const double x[3], double out[3])
     for (int a = 0; a < t->dimension; a++)
         if (!(x[a] >= t->f->box_min[a] && x[a] <= t->f->box_max[a])) return false;
     visit(&t->particles, t->dimension, x, add_particle, &m);
-    if (!(m.weight > THIN*FULL[t->dimension - 2])) return false;
+    if (!(m.weight > THIN*view_full_weight(t->dimension))) return false;
     for (int a = 0; a < 3; a++) m.v[a] /= m.weight, along += m.v[a]*t->normal[a];
     for (int a = 0; a < 3; a++) {
         if (t->flat) m.v[a] -= along*t->normal[a];

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Reads VTU, VTP, STL and PVD files with VTK's own readers and compares them with what was written.
+"""Reads VTU, VTP, VTI, STL and PVD files with VTK's own readers and compares them with what was written.
 
     read_vtk.py CHECKS.json        a list of {"file": ..., expected values}; paths relative to the JSON file
     read_vtk.py FILE [key=value]   one file, values as JSON:  read_vtk.py a.vtu points=1000 'arrays={"p":1}'
@@ -25,7 +25,8 @@ except ImportError as problem:
     print("VTK for Python is missing:", problem)
     sys.exit(77)
 
-READERS = {".vtu": vtk.vtkXMLUnstructuredGridReader, ".vtp": vtk.vtkXMLPolyDataReader, ".stl": vtk.vtkSTLReader}
+READERS = {".vtu": vtk.vtkXMLUnstructuredGridReader, ".vtp": vtk.vtkXMLPolyDataReader, ".stl": vtk.vtkSTLReader,
+           ".vti": vtk.vtkXMLImageDataReader}
 passed = failed = 0
 
 

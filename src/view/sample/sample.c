@@ -1,0 +1,264 @@
+/* Fields at places. What is wet: the weights of the liquid around a place, over those of full liquid, are the
+   share of its surroundings that liquid fills; the points of bodies give the share of bodies. A place is wet
+   where liquid fills more than half of what bodies leave free, and not less than they do. Sides of the domain
+   are mirrors there. Values come from the particles alone, without images: they hold for any wall. Drawback:
+   a drop of one or two particles is dry. */
+#include "view/sample/sample.h"
+#include "view/weight.h"
+#include <inttypes.h>
+#include <string.h>
+
+enum { MOST_VALUES = 9*TOBI_SAMPLE_FIELD_LIMIT, UNKNOWNS = 4 };
+static const double REACH = 2;           /* spacings                                            */
+static const double FULL_ENOUGH = 0.5;   /* of the room without bodies: a flat surface           */
+static const double DEPTH = 0.1;         /* spacings that a place may lie within a body, for rounding */
+static const double MOST_GAIN = 5;       /* sum of sizes of factors: 1 of a mean, 4 in a corner of a box */
+static const double LEAST_PIVOT = 1e-4;  /* of the sum of weights: points in a plane have none   */
+
+tobi_sample_def tobi_default_sample(void) { return (tobi_sample_def){ .dimension = 3 }; }
+
+typedef struct sample_view {
+    const tobi_sample_def *def;
+    sample_cells liquid, solid;
+    double reach, full;
+} sample_view;
+
+/* A place, or its images in the sides; through a periodic one it sees the particles themselves. */
+typedef struct image { double x[3]; bool real; } image;
+
+static int list_images(const sample_view *v, const double place[3], image out[27])
+{
+    const tobi_sample_def *d = v->def;
+    int count = 1;
+    out[0] = (image){ { place[0], place[1], place[2] }, true };
+    for (int a = 0; a < d->dimension; a++) {
+        const double low = d->box_min[a], high = d->box_max[a], x = place[a];
+        const int before = count;
+        for (int side = 0; side < 2; side++) {
+            if ((side ? high - x : x - low) >= v->reach) continue;
+            const double other = d->periodic[a] ? x + (side ? low - high : high - low)
+                                                : 2*(side ? high : low) - x;
+            for (int k = 0; k < before; k++) {
+                out[count] = out[k];
+                out[count].x[a] = other;
+                out[count++].real &= d->periodic[a] != 0;
+            }
+        }
+    }
+    return count;
+}
+
+static double find_square(const sample_view *v, const double a[3], const double b[3])
+{
+    double sum = 0;
+    for (int k = 0; k < v->def->dimension; k++) sum += (a[k] - b[k])*(a[k] - b[k]);
+    return sum;
+}
+
+/* The share of what is around that these points fill. */
+static double find_share(const sample_view *v, const sample_cells *c, const image *images, int count)
+{
+    const double reach2 = v->reach*v->reach;
+    double sum = 0;
+    for (int k = 0; k < count; k++) {
+        int64_t state = 0;
+        int32_t begin, end;
+        while (sample_next_run(c, images[k].x, v->reach, &state, &begin, &end))
+            for (int32_t i = begin; i < end; i++) {
+                const double r2 = find_square(v, images[k].x, c->x[i]);
+                if (r2 < reach2) sum += view_weight(r2, reach2);
+            }
+    }
+    return sum/v->full;
+}
+
+static bool is_wet(const sample_view *v, const image *images, int count)
+{
+    const double liquid = find_share(v, &v->liquid, images, count);
+    if (liquid <= 0.5*FULL_ENOUGH) return false;
+    const double solid = find_share(v, &v->solid, images, count);
+    return solid <= liquid + DEPTH && liquid > FULL_ENOUGH*(1 - fmin(solid, 0.5));
+}
+
+/* Solves M c = (1, 0, ...) by Cholesky. False: the points lie in a plane, or nearly. */
+static bool solve_first(int n, double m[UNKNOWNS][UNKNOWNS], double c[UNKNOWNS])
+{
+    const double least = LEAST_PIVOT*m[0][0];
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j <= i; j++) {
+            double sum = m[i][j];
+            for (int k = 0; k < j; k++) sum -= m[i][k]*m[j][k];
+            if (i == j && !(sum > least)) return false;
+            m[i][j] = i == j ? sqrt(sum) : sum/m[j][j];
+        }
+    for (int i = 0; i < n; i++) {
+        c[i] = i == 0 ? 1 : 0;
+        for (int k = 0; k < i; k++) c[i] -= m[i][k]*c[k];
+        c[i] /= m[i][i];
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        for (int k = i + 1; k < n; k++) c[i] -= m[k][i]*c[k];
+        c[i] /= m[i][i];
+    }
+    return true;
+}
+
+/* The particles around: sum over them of weight times (1, x, y, z)^2, lengths in reaches. */
+static void find_moments(const sample_view *v, const image *images, int count, double m[UNKNOWNS][UNKNOWNS])
+{
+    const int n = v->def->dimension + 1;
+    const double reach2 = v->reach*v->reach;
+    memset(m, 0, UNKNOWNS*sizeof *m);
+    for (int k = 0; k < count; k++) {
+        const double *x = images[k].x;
+        int64_t state = 0;
+        int32_t begin, end;
+        while (images[k].real && sample_next_run(&v->liquid, x, v->reach, &state, &begin, &end))
+            for (int32_t e = begin; e < end; e++) {
+                const double *y = v->liquid.x[e], r2 = find_square(v, x, y);
+                if (!(r2 < reach2)) continue;
+                const double w = view_weight(r2, reach2);
+                const double p[UNKNOWNS] = { 1, (y[0] - x[0])/v->reach, (y[1] - x[1])/v->reach,
+                                             n > 3 ? (y[2] - x[2])/v->reach : 0 };
+                for (int i = 0; i < n; i++)
+                    for (int j = 0; j <= i; j++) m[i][j] += w*p[i]*p[j];
+            }
+    }
+}
+
+/* Sums of the values by the factors of the fit, and by weights. */
+typedef struct sums { double gain, weight, fit[MOST_VALUES], mean[MOST_VALUES]; } sums;
+
+static void add_values(const sample_view *v, int32_t row, double factor, double weight, sums *s)
+{
+    int n = 0;
+    s->gain += fabs(factor);
+    s->weight += weight;
+    for (int f = 0; f < v->def->field_count; f++) {
+        const tobi_sample_field *field = &v->def->fields[f];
+        const double *values = field->values + (int64_t)row*field->components;
+        for (int k = 0; k < field->components; k++, n++)
+            s->fit[n] += factor*values[k], s->mean[n] += weight*values[k];
+    }
+}
+
+static void find_sums(const sample_view *v, const image *images, int count, const double c[UNKNOWNS], sums *s)
+{
+    const double reach2 = v->reach*v->reach;
+    for (int k = 0; k < count; k++) {
+        const double *x = images[k].x;
+        int64_t state = 0;
+        int32_t begin, end;
+        while (images[k].real && sample_next_run(&v->liquid, x, v->reach, &state, &begin, &end))
+            for (int32_t e = begin; e < end; e++) {
+                const double *y = v->liquid.x[e], r2 = find_square(v, x, y);
+                if (!(r2 < reach2)) continue;
+                const double w = view_weight(r2, reach2);
+                double factor = c[0];
+                for (int a = 0; a < v->def->dimension; a++) factor += c[a + 1]*(y[a] - x[a])/v->reach;
+                add_values(v, v->liquid.row[e], w*factor, w, s);
+            }
+    }
+}
+
+/* Values: the fit, unless it amplifies too much what scatters among the particles. */
+static void write_place(const sample_view *v, int64_t place, bool wet, const image *images, int count,
+                        int total)
+{
+    sums s;
+    double m[UNKNOWNS][UNKNOWNS], c[UNKNOWNS] = { 0 };
+    bool fits = false;
+    s.gain = s.weight = 0;
+    memset(s.fit, 0, (size_t)total*sizeof *s.fit);
+    memset(s.mean, 0, (size_t)total*sizeof *s.mean);
+    if (wet) {
+        find_moments(v, images, count, m);
+        fits = solve_first(v->def->dimension + 1, m, c);
+        find_sums(v, images, count, c, &s);
+    }
+    const bool few = !fits || s.gain > MOST_GAIN;
+    for (int f = 0, n = 0; f < v->def->field_count; f++) {
+        const tobi_sample_field *field = &v->def->fields[f];
+        for (int k = 0; k < field->components; k++, n++)
+            field->at[place*field->components + k] = !wet ? NAN : few ? s.mean[n]/s.weight : s.fit[n];
+    }
+}
+
+static void sample_places(const void *view, int64_t begin, int64_t end)
+{
+    const sample_view *v = view;
+    const tobi_sample_def *d = v->def;
+    int total = 0;
+    for (int f = 0; f < d->field_count; f++) total += d->fields[f].components;
+    for (int64_t i = begin; i < end; i++) {
+        image images[27];
+        double x[3] = { d->places[i][0], d->places[i][1], d->dimension == 3 ? d->places[i][2] : 0 };
+        bool inside = true;
+        for (int a = 0; a < d->dimension; a++) {
+            const double length = d->box_max[a] - d->box_min[a];
+            if (d->periodic[a]) x[a] -= length*floor((x[a] - d->box_min[a])/length);
+            inside &= x[a] >= d->box_min[a] && x[a] <= d->box_max[a];
+        }
+        const int count = inside ? list_images(v, x, images) : 0;
+        const bool wet = inside && is_wet(v, images, count);
+        if (d->wet) d->wet[i] = wet;
+        write_place(v, i, wet, images, count, total);
+    }
+}
+
+static tobi_status check_fields(const tobi_sample_def *d, tobi_error *err)
+{
+    if (d->field_count < 0 || d->field_count > TOBI_SAMPLE_FIELD_LIMIT)
+        return tobi_fail(err, TOBI_INVALID, "sample: %d fields, allowed are 0 to %d", d->field_count,
+                         TOBI_SAMPLE_FIELD_LIMIT);
+    if (d->field_count) TOBI_NEED(d->fields, "the fields");
+    for (int k = 0; k < d->field_count; k++) {
+        const tobi_sample_field *f = &d->fields[k];
+        if (f->components < 1 || f->components > 9)
+            return tobi_fail(err, TOBI_INVALID, "sample: field %d has %d components, allowed are 1 to 9", k,
+                             f->components);
+        if (d->particle_count) TOBI_NEED(f->values, "the values of a field");
+        if (d->place_count) TOBI_NEED(f->at, "the place for the values of a field");
+    }
+    return TOBI_OK;
+}
+
+static tobi_status check_def(const tobi_sample_def *d, tobi_error *err)
+{
+    if (d->dimension != 2 && d->dimension != 3)
+        return tobi_fail(err, TOBI_INVALID, "sample: dimension %d, allowed are 2 and 3", d->dimension);
+    if (!(d->spacing > 0) || !isfinite(d->spacing))
+        return tobi_fail(err, TOBI_INVALID, "sample: a spacing of %g m, must be greater than 0", d->spacing);
+    for (int a = 0; a < d->dimension; a++)
+        if (!isfinite(d->box_min[a]) || !isfinite(d->box_max[a]) || !(d->box_min[a] < d->box_max[a]))
+            return tobi_fail(err, TOBI_INVALID, "sample: the box is empty along %c", "xyz"[a]);
+    const int64_t count[] = { d->particle_count, d->solid_count, d->place_count };
+    const char *const what[] = { "particles", "points of bodies", "places" };
+    for (int k = 0; k < 3; k++)
+        if (count[k] < 0 || count[k] > INT32_MAX - 1)
+            return tobi_fail(err, TOBI_INVALID, "sample: %" PRId64 " %s, allowed are 0 to %d", count[k],
+                             what[k], INT32_MAX - 1);
+    if (d->particle_count) TOBI_NEED(d->positions, "the positions");
+    if (d->solid_count) TOBI_NEED(d->solids, "the points of bodies");
+    if (d->place_count) TOBI_NEED(d->places, "the places");
+    return check_fields(d, err);
+}
+
+tobi_status tobi_sample_make(const tobi_sample_def *def, tobi_error *err)
+{
+    TOBI_NEED(def, "def");
+    TOBI_TRY(check_def(def, err));
+    tobi_exec exec;
+    sample_view v = { .def = def, .reach = REACH*def->spacing, .full = view_full_weight(def->dimension) };
+    TOBI_TRY(tobi_exec_init(&exec, def->threads, err));
+    tobi_status status = tobi_exec_reserve(&exec, def->particle_count + def->solid_count, err);
+    if (status == TOBI_OK)
+        status = sample_fill_cells(&v.liquid, &exec, def, v.reach, def->particle_count, def->positions, err);
+    if (status == TOBI_OK)
+        status = sample_fill_cells(&v.solid, &exec, def, v.reach, def->solid_count, def->solids, err);
+    if (status == TOBI_OK) tobi_loop(exec.threads, def->place_count, 64, sample_places, &v);
+    sample_free_cells(&v.liquid);
+    sample_free_cells(&v.solid);
+    tobi_exec_free(&exec);
+    return status;
+}
