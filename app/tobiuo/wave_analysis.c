@@ -8,8 +8,11 @@
 
 static const double TURN = 6.283185307179586;
 static const double BAND = 0.1;        /* of the peak frequency: over so much a spectrum is averaged    */
+static const double GAIN_BAND = 0.2;   /* and a gain                                                     */
 /* Of the peak frequency, what is split: twice the peak are crests, which move with their wave. */
 static const double LOWEST = 0.5, HIGHEST = 1.8;
+static const double FAINT = 0.05;      /* of the highest density of waves: below it no gain is told        */
+static const int FEW = 3;              /* frequencies: of fewer the coherence is 1 whatever the records    */
 static const double SEEN = 0.1;        /* least 1 - |sum e^2ikx|^2/n^2: of two gauges 0.05 to 0.45 lengths */
 
 double wave_length(double frequency, double depth, double gravity)
@@ -144,11 +147,17 @@ static int measure_heights(wave_gauge *g, size_t count, double step)
     return 0;
 }
 
+/* Frequencies on each side of one that are averaged. */
+static size_t half_band(const wave_set *s, double band)
+{
+    return (size_t)fmax(0, 0.5*(band*s->peak*(double)s->count*s->step - 1));
+}
+
 /* The spectrum, averaged over BAND, and its periods. */
 static int measure_spectrum(const wave_set *s, wave_gauge *g)
 {
     const double bin = 1/((double)s->count*s->step);
-    const size_t half = (size_t)fmax(0, 0.5*(BAND*s->peak/bin - 1));
+    const size_t half = half_band(s, BAND);
     double *raw = calloc(s->bins + 1, sizeof *raw), most = -1, sum = 0, over = 0;
     g->density = calloc(s->bins + 1, sizeof *g->density);
     if (!raw || !g->density) return free(raw), -1;
@@ -182,6 +191,15 @@ static void set_bins(wave_set *s)
     s->bins = 5*waves < s->count/2 ? 5*waves : s->count/2;
 }
 
+int wave_measure_record(const wave_set *s, wave_gauge *g)
+{
+    double square = 0;
+    g->mean += level_out(g->eta, s->count);
+    for (size_t n = 0; n < s->count; n++) square += g->eta[n]*g->eta[n]/(double)s->count;
+    g->height_m0 = 4*sqrt(square);
+    return measure_heights(g, s->count, s->step) != 0 || measure_spectrum(s, g) != 0 ? -1 : 0;
+}
+
 int wave_measure(wave_set *s)
 {
     for (int g = 0; g < s->gauges; g++) s->gauge[g].mean = level_out(s->gauge[g].eta, s->count);
@@ -197,53 +215,120 @@ int wave_measure(wave_set *s)
     set_bins(s);
     for (int k = 0; k < s->gauges; k++) {
         wave_gauge *g = &s->gauge[k];
-        double square = 0;
         memmove(g->eta, g->eta + cut, whole*sizeof *g->eta);
-        g->mean += level_out(g->eta, whole);
-        for (size_t n = 0; n < whole; n++) square += g->eta[n]*g->eta[n]/(double)whole;
-        g->height_m0 = 4*sqrt(square);
-        if (measure_heights(g, whole, s->step) != 0 || measure_spectrum(s, g) != 0) return -1;
+        if (wave_measure_record(s, g) != 0) return -1;
     }
     return 0;
 }
 
-/* Both waves of one frequency; 0: the gauges cannot tell them apart. */
+/* Amplitudes at the first gauge of both waves of one frequency, and the mean square at the gauges; 0: the
+   gauges cannot tell them apart. */
 static int split_bin(const wave_set *s, const int *gauges, const double *at, int count, size_t bin,
-                     double size[3])
+                     double complex both[2], double *square)
 {
     const double frequency = (double)bin/((double)s->count*s->step);
     const double k = TURN/wave_length(frequency, s->depth, s->gravity), n = count;
     double complex twice = 0, forward = 0, back = 0;
-    size[2] = 0;
+    *square = 0;
     for (int g = 0; g < count; g++) {
         const double complex a = find_amplitude(s->gauge[gauges[g]].eta, s->count,
                                                 (double)bin/(double)s->count, 0);
         twice += cexp(2*I*k*at[g]);
         forward += a*cexp(I*k*at[g]);
         back += a*cexp(-I*k*at[g]);
-        size[2] += cabs(a)*cabs(a)/n;
+        *square += cabs(a)*cabs(a)/n;
     }
     const double det = n*n - cabs(twice)*cabs(twice);
     if (det < SEEN*n*n) return 0;
-    size[0] = pow(cabs(n*forward - twice*back)/det, 2);
-    size[1] = pow(cabs(n*back - conj(twice)*forward)/det, 2);
+    both[0] = (n*forward - twice*back)/det;
+    both[1] = (n*back - conj(twice)*forward)/det;
     return 1;
+}
+
+static int is_split(const wave_set *s, size_t bin)
+{
+    const double frequency = (double)bin/((double)s->count*s->step);
+    return frequency >= LOWEST*s->peak && frequency <= HIGHEST*s->peak;
 }
 
 int wave_split(const wave_set *s, const int *gauges, const double *at, int count, wave_group *out)
 {
-    const double bin = 1/((double)s->count*s->step);
-    double sum[3] = { 0 }, all = 0, size[3];
+    double sum[3] = { 0 }, all = 0, square;
+    double complex both[2];
     for (size_t k = 1; k <= s->bins; k++) {
-        if ((double)k*bin < LOWEST*s->peak || (double)k*bin > HIGHEST*s->peak) continue;
-        if (split_bin(s, gauges, at, count, k, size))
-            for (int n = 0; n < 3; n++) sum[n] += 0.5*size[n];
+        if (!is_split(s, k) || !split_bin(s, gauges, at, count, k, both, &square)) continue;
+        for (int n = 0; n < 2; n++) sum[n] += 0.5*cabs(both[n])*cabs(both[n]);
+        sum[2] += 0.5*square;
     }
     for (int g = 0; g < count; g++) all += pow(s->gauge[gauges[g]].height_m0/4, 2)/count;
     if (!(sum[2] > 0 && all > 0)) return 1;
     out->resolved = sum[2]/all;
     out->forward = 4*sqrt(sum[0]/out->resolved);
     out->back = 4*sqrt(sum[1]/out->resolved);
+    return 0;
+}
+
+void wave_find_incident(const wave_set *s, const int *gauges, const double *at, int count,
+                        double complex *amplitude)
+{
+    double complex both[2];
+    double square;
+    for (size_t k = 1; k <= s->bins; k++) {
+        amplitude[k - 1] = NAN;
+        if (!is_split(s, k)) continue;
+        if (count == 1)
+            amplitude[k - 1] = find_amplitude(s->gauge[gauges[0]].eta, s->count,
+                                              (double)k/(double)s->count, 0);
+        else if (split_bin(s, gauges, at, count, k, both, &square))
+            amplitude[k - 1] = both[0];
+    }
+}
+
+/* Sums over the frequencies beside one. */
+typedef struct band_sums {
+    double waves, record;
+    double complex both;
+    int count;
+} band_sums;
+
+static band_sums sum_band(const wave_set *s, size_t bin, const double complex *waves,
+                          const double complex *record)
+{
+    const size_t half = half_band(s, GAIN_BAND), from = bin > half ? bin - half : 1;
+    band_sums b = { 0, 0, 0, 0 };
+    for (size_t n = from; n <= bin + half && n <= s->bins; n++) {
+        const double complex f = waves[n - 1], r = record[n - 1];
+        if (isnan(creal(f))) continue;
+        b.waves += creal(f*conj(f));
+        b.record += creal(r*conj(r));
+        b.both += r*conj(f);
+        b.count++;
+    }
+    return b;
+}
+
+int wave_find_gains(const wave_set *s, const wave_gauge *record, const double complex *waves, double way,
+                    wave_gain *gain)
+{
+    double complex *own = calloc(2*(s->bins + 1), sizeof *own), *there = own ? own + s->bins : NULL;
+    double most = 0;
+    if (!own) return -1;
+    for (size_t k = 1; k <= s->bins; k++) {
+        const double length = wave_length((double)k/((double)s->count*s->step), s->depth, s->gravity);
+        own[k - 1] = find_amplitude(record->eta, s->count, (double)k/(double)s->count, 0);
+        there[k - 1] = waves[k - 1]*cexp(-I*TURN*way/length);
+    }
+    for (size_t k = 1; k <= s->bins; k++) most = fmax(most, sum_band(s, k, there, own).waves);
+    for (size_t k = 1; k <= s->bins; k++) {
+        const band_sums b = sum_band(s, k, there, own);
+        gain[k - 1] = (wave_gain){ NAN, NAN, NAN };
+        if (isnan(creal(waves[k - 1])) || !(b.waves > FAINT*most)) continue;
+        gain[k - 1].gain = sqrt(b.record/b.waves);
+        if (!(b.record > 0)) continue;
+        gain[k - 1].phase = 360/TURN*carg(b.both);
+        if (b.count >= FEW) gain[k - 1].coherence = creal(b.both*conj(b.both))/(b.waves*b.record);
+    }
+    free(own);
     return 0;
 }
 

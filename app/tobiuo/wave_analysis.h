@@ -1,6 +1,7 @@
 /* Waves at gauges: heights, periods, spectra; and of a group of gauges the waves that go on and those that
    come back. Records are evenly spaced in time and about their mean. */
 #pragma once
+#include <complex.h>
 #include <stddef.h>
 
 typedef struct wave_gauge {
@@ -48,6 +49,24 @@ int wave_measure(wave_set *s);
 /* Least squares at each frequency (Mansard & Funke 1980, Zelt & Skjelbreia 1992; of two gauges Goda & Suzuki
    1976). at: ways of the gauges along the waves, m. 1: the gauges tell waves of no frequency apart. */
 int wave_split(const wave_set *s, const int *gauges, const double *at, int count, wave_group *out);
+/* How a record follows the waves at one frequency; NaN: the waves are too low there, or not told apart. */
+typedef struct wave_gain {
+    double gain;                    /* unit of the record per m                                  */
+    double phase;                   /* degrees before the crest                                  */
+    double coherence;               /* 0 to 1: share that is linear in the waves; NaN: of a short record */
+} wave_gain;
+
+/* A record of another thing than a level, in any unit, at the times of the set after wave_measure. -1: no
+   memory. */
+int wave_measure_record(const wave_set *s, wave_gauge *record);
+/* Amplitudes a of the waves that go on, Re(a e^(i 2 pi f t)) at the first gauge, of wave_set.bins
+   frequencies; NaN where the gauges do not tell them. One gauge: what it has. */
+void wave_find_incident(const wave_set *s, const int *gauges, const double *at, int count,
+                        double complex *amplitude);
+/* gain: of wave_set.bins frequencies. way: m behind the first gauge, where the phase is taken.
+   -1: no memory. */
+int wave_find_gains(const wave_set *s, const wave_gauge *record, const double complex *waves, double way,
+                    wave_gain *gain);
 /* The length, m, of long-crested waves of a frequency, Hz. */
 double wave_length(double frequency, double depth, double gravity);
 void wave_set_free(wave_set *s);

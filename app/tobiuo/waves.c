@@ -4,7 +4,7 @@
 #include "app.h"
 #include "picture.h"
 #include "table.h"
-#include "wave_analysis.h"
+#include "waves.h"
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>
@@ -12,19 +12,15 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { GROUPS = 16, MEMBERS = 16, RECORD_LIMIT = 20000 };
-
-typedef struct wave_options {
-    const char *dir, *format, *groups[GROUPS];
-    int group_count;
-    double from, until, depth;         /* s; m, below 0: that of the scene */
-} wave_options;
+enum { RECORD_LIMIT = 20000 };
 
 enum { KEY_FROM = KEY_OWN, KEY_END, KEY_DEPTH };
 
 static const struct argp_option options[] = {
     { "gauges", 'g', "A,B,...", 0, "sensors in line, from the side that waves come from: tell the "
       "waves that go on and those that come back; may be repeated, behind a breakwater", 0 },
+    { "response", 'r', "NAME", 0, "how a body, or a column of probes.csv, lines.csv or joints.csv, follows "
+      "the waves: significant value, gain, phase; may be repeated", 0 },
     { "from", KEY_FROM, "S", 0, "use levels from this time on, s (the start)", 0 },
     { "until", KEY_END, "S", 0, "and up to this time, s (the end)", 0 },
     { "depth", KEY_DEPTH, "M", 0, "of the water at the gauges, m (from the floor of the domain)", 0 },
@@ -40,6 +36,10 @@ static error_t parse(int key, char *value, struct argp_state *state)
         if (o->group_count == GROUPS) argp_error(state, "--gauges: at most %d times", GROUPS);
         o->groups[o->group_count++] = value;
         break;
+    case 'r':
+        if (o->response_count == RESPONSES) argp_error(state, "--response: at most %d times", RESPONSES);
+        o->responses[o->response_count++] = value;
+        break;
     case 'f':
         if (strcmp(value, "svg") != 0 && strcmp(value, "png") != 0)
             argp_error(state, "--format: '%s' is neither svg nor png", value);
@@ -52,17 +52,6 @@ static error_t parse(int key, char *value, struct argp_state *state)
     }
     return 0;
 }
-
-/* Everything about one call. */
-typedef struct wave_run {
-    const wave_options *options;
-    table levels;                      /* probes.csv */
-    json_t *scene;                     /* resolved.json */
-    int dimension, up;                 /* 2 or 3; the axis against gravity */
-    wave_set set;
-    int group[GROUPS][MEMBERS], members[GROUPS];
-    wave_group result[GROUPS];
-} wave_run;
 
 /* --- reading --- */
 
@@ -218,22 +207,22 @@ static int read_group(wave_run *w, int group)
     return w->members[group] > 1 ? 0 : complain("--gauges %s: at least two gauges", text);
 }
 
-/* Their ways along the line from the first to the last. */
-static int line_up(const wave_run *w, int group, double at[MEMBERS])
+int waves_line_up(const wave_run *w, int group, double at[MEMBERS], double way[3])
 {
     const int *g = w->group[group], count = w->members[group];
     const double *first = w->set.gauge[g[0]].place, *last = w->set.gauge[g[count - 1]].place;
-    double way[3], length = 0, off = 0;
+    double length = 0, off = 0;
     for (int a = 0; a < 3; a++) way[a] = a == w->up ? 0 : last[a] - first[a], length += way[a]*way[a];
     length = sqrt(length);
     if (!(length > 0))
         return complain("--gauges %s: the first and the last stand at one place", w->options->groups[group]);
+    for (int a = 0; a < 3; a++) way[a] /= length;
     for (int k = 0; k < count; k++) {
         double square = 0;
         at[k] = 0;
         for (int a = 0; a < 3; a++) {
             const double arm = a == w->up ? 0 : w->set.gauge[g[k]].place[a] - first[a];
-            at[k] += arm*way[a]/length;
+            at[k] += arm*way[a];
             square += arm*arm;
         }
         off = fmax(off, sqrt(fmax(0, square - at[k]*at[k])));
@@ -245,8 +234,8 @@ static int line_up(const wave_run *w, int group, double at[MEMBERS])
 
 static int split_group(wave_run *w, int group)
 {
-    double at[MEMBERS];
-    int code = line_up(w, group, at);
+    double at[MEMBERS], way[3];
+    int code = waves_line_up(w, group, at, way);
     if (code) return code;
     if (wave_split(&w->set, w->group[group], at, w->members[group], &w->result[group]) != 0)
         return complain("--gauges %s: they cannot tell waves of %.3g s, %.3g m long, apart; two of "
@@ -327,10 +316,9 @@ static void print_tables(const wave_run *w)
     }
 }
 
-typedef void table_writer(FILE *out, const wave_run *w);
-
-static void write_gauges(FILE *out, const wave_run *w)
+static void write_gauges(FILE *out, const void *what)
 {
+    const wave_run *w = what;
     fputs("gauge,x [m],y [m],z [m]", out);
     for (int k = 0; k < COLUMNS; k++) fprintf(out, ",%s [%s]", columns[k].name, columns[k].unit);
     fputs(",waves\n", out);
@@ -344,8 +332,9 @@ static void write_gauges(FILE *out, const wave_run *w)
     }
 }
 
-static void write_groups(FILE *out, const wave_run *w)
+static void write_groups(FILE *out, const void *what)
 {
+    const wave_run *w = what;
     fputs("gauges,H_m0_on [m],H_m0_back [m],reflection,transmission,resolved\n", out);
     for (int k = 0; k < w->options->group_count; k++) {
         const wave_group *r = &w->result[k];
@@ -356,8 +345,9 @@ static void write_groups(FILE *out, const wave_run *w)
     }
 }
 
-static void write_spectra(FILE *out, const wave_run *w)
+static void write_spectra(FILE *out, const void *what)
 {
+    const wave_run *w = what;
     const wave_set *s = &w->set;
     fputs("frequency [Hz]", out);
     for (int g = 0; g < s->gauges; g++) fprintf(out, ",%s_density [m2/Hz]", s->gauge[g].name);
@@ -368,13 +358,14 @@ static void write_spectra(FILE *out, const wave_run *w)
     fputc('\n', out);
 }
 
-static int write_table(const wave_run *w, const char *name, table_writer *write)
+int waves_write_table(const wave_run *w, const char *name, wave_table_writer *write,
+                      const void *what)
 {
     char *text = NULL;
     size_t size;
     FILE *out = open_memstream(&text, &size);
     if (!out) return complain("out of memory");
-    write(out, w);
+    write(out, what);
     if (fclose(out) != 0) return complain("out of memory");
     char *path = clear_place(w->options->dir, name);
     const int code = path ? write_new(path, text, size) : EXIT_ERROR;
@@ -384,38 +375,50 @@ static int write_table(const wave_run *w, const char *name, table_writer *write)
     return code;
 }
 
+void waves_add_curve(const wave_run *w, panel *a, const char *label, const double *value, size_t stride)
+{
+    const wave_set *s = &w->set;
+    if (a->curves == CURVE_LIMIT) return;
+    const int colour = a->curves++;
+    curve *c = &a->curve[colour];
+    *c = (curve){ .label = label, .colour = colour, .style = colour < 7 ? CURVE_LINE : CURVE_DASHED,
+                  .count = s->bins, .x = calloc(s->bins, sizeof(double)),
+                  .y = calloc(s->bins, sizeof(double)) };
+    if (!c->x || !c->y) exit(complain("out of memory"));
+    for (size_t k = 0; k < s->bins; k++)
+        c->x[k] = (double)(k + 1)/((double)s->count*s->step), c->y[k] = value[k*stride];
+}
+
+int waves_draw(const wave_run *w, const picture *p, const char *name)
+{
+    char *folder = join_path(w->options->dir, "plots"), file[64];
+    int code = make_series_folder(folder);
+    char *script = code ? NULL : clear_place(folder, "plots.gnuplot");
+    FILE *out = script ? fopen(script, "wx") : NULL;
+    snprintf(file, sizeof file, "%s.%s", name, w->options->format);
+    if (out) {
+        picture_begin_script(out, w->options->format);
+        picture_write(out, p, file);
+        if (fclose(out) != 0) code = complain("cannot write %s: %s", script, strerror(errno));
+        if (!code) code = run_gnuplot(folder);
+        if (!code) printf("%s/%s\n", folder, file);
+    } else if (!code) code = complain("cannot write %s/plots.gnuplot: %s", folder, strerror(errno));
+    free(script);
+    free(folder);
+    return code;
+}
+
 /* Spectra, up to three times the peak. */
 static int draw_spectra(const wave_run *w)
 {
     const wave_set *s = &w->set;
-    picture p = { .panels = 1, .x_label = "frequency, Hz", .end = 3*s->peak };
-    panel *a = &p.panel[0];
-    char *folder = join_path(w->options->dir, "plots"), name[32];
-    int code = make_series_folder(folder);
-    char *script = code ? NULL : clear_place(folder, "plots.gnuplot");
-    FILE *out = script ? fopen(script, "wx") : NULL;
-    snprintf(p.title, sizeof p.title, "Spectra of the waves");
-    snprintf(a->y_label, sizeof a->y_label, "density, m2/Hz");
-    snprintf(name, sizeof name, "wave_spectra.%s", w->options->format);
-    for (int g = 0; g < s->gauges && g < CURVE_LIMIT && out; g++) {
-        curve *c = &a->curve[a->curves++];
-        *c = (curve){ .label = s->gauge[g].name, .colour = g, .style = g < 7 ? CURVE_LINE : CURVE_DASHED,
-                      .count = s->bins, .x = calloc(s->bins, sizeof(double)),
-                      .y = calloc(s->bins, sizeof(double)) };
-        if (!c->x || !c->y) exit(complain("out of memory"));
-        for (size_t k = 0; k < s->bins; k++)
-            c->x[k] = (double)(k + 1)/((double)s->count*s->step), c->y[k] = s->gauge[g].density[k];
-    }
-    if (out) {
-        picture_begin_script(out, w->options->format);
-        picture_write(out, &p, name);
-        if (fclose(out) != 0) code = complain("cannot write %s: %s", script, strerror(errno));
-        if (!code) code = run_gnuplot(folder);
-        if (!code) printf("%s/%s\n", folder, name);
-    } else if (!code) code = complain("cannot write %s/plots.gnuplot: %s", folder, strerror(errno));
+    picture p = { .title = "Spectra of the waves", .panels = 1, .x_label = "frequency, Hz",
+                  .end = 3*s->peak };
+    snprintf(p.panel[0].y_label, sizeof p.panel[0].y_label, "density, m2/Hz");
+    for (int g = 0; g < s->gauges; g++)
+        waves_add_curve(w, &p.panel[0], s->gauge[g].name, s->gauge[g].density, 1);
+    const int code = waves_draw(w, &p, "wave_spectra");
     picture_free(&p);
-    free(script);
-    free(folder);
     return code;
 }
 
@@ -438,15 +441,17 @@ static int analyse(wave_run *w)
     for (int k = 0; k < o->group_count && !code; k++) code = split_group(w, k);
     if (code) return code;
     print_tables(w);
-    code = write_table(w, "waves.csv", write_gauges);
-    if (!code && o->group_count) code = write_table(w, "wave_groups.csv", write_groups);
-    if (!code) code = write_table(w, "wave_spectra.csv", write_spectra);
-    return code ? code : draw_spectra(w);
+    code = waves_write_table(w, "waves.csv", write_gauges, w);
+    if (!code && o->group_count) code = waves_write_table(w, "wave_groups.csv", write_groups, w);
+    if (!code) code = waves_write_table(w, "wave_spectra.csv", write_spectra, w);
+    if (!code) code = draw_spectra(w);
+    return code ? code : tell_responses(w);
 }
 
 const struct argp waves_argp = { .options = options, .parser = parse, .args_doc = "DIR",
     .doc = "Analyse the levels of the run in DIR: significant heights, periods and spectra of its waves, and "
-           "the waves that come back from a wall or go on behind a breakwater. Gnuplot draws the spectra." };
+           "the waves that come back from a wall or go on behind a breakwater, and how bodies and moorings "
+           "follow them. Gnuplot draws spectra and gains." };
 
 int tobiuo_waves(int argc, char **argv)
 {
