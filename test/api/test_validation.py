@@ -19,12 +19,13 @@ TREE = {
 import pathlib, sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case
-case = Case("wave", "Wave", "A wave.")
+case = Case("wave", "Wave")
 case.run("first")
 case.run("second")
 case.figure("period, deviation", -0.02, "within 0.01", False)
 case.finish()
 """,
+    "test/physics/wave/page.md": "A wave.\n\n- **Judged.** Its period.\n",
     # run SCENE --out DIR ... | resume DIR ...: notes its words in calls; stops with a checkpoint where told
     "program": """#!/bin/bash
 echo "$1 $(basename "$2")" >> calls
@@ -104,7 +105,13 @@ def check_age(root):
     change(root, "test/golden/hashes.csv", "ff", "aa")
     tool(root, "mark")
     expect("taken back", "older" not in read(root))
-    change(root, "test/physics/wave/run.py", "A wave.", "The wave.")
+    change(root, "test/physics/wave/page.md", "A wave.", "The wave.")
+    text, code = tool(root, "check")
+    expect("another text fails", code == 1 and "its text is not that of test/physics/wave/page.md" in text)
+    tool(root, "mark")
+    expect("mark writes it", "\n\nThe wave.\n\n- **Judged.** Its period.\n\n| figure" in read(root))
+    expect("a text makes no page old", "older" not in read(root) and tool(root, "check")[1] == 0)
+    change(root, "test/physics/wave/run.py", '"Wave"', '"Waves"')
     tool(root, "mark")
     expect("a case that changed", "\n> **This page is older than its case.**\n" in read(root))
 

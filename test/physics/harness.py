@@ -1,6 +1,6 @@
 """What every physics case needs: runs the program, reads its files, prints and records figures.
 
-A case is a file test/physics/<case>/run.py with a Case. It prints each figure with its goal, met or
+A case is a file test/physics/<case>/run.py with a Case; page.md beside it is the text of its page. It prints each figure with its goal, met or
 MISS, and the exit code follows them and case.hold(): statements with a tolerance of their own, each
 justified where it stands. Figures for which the smoke size is too coarse are in coarse.csv (case, and
 text with * for numbers that are measured): they are judged at reference size only. There the rows and the
@@ -36,8 +36,8 @@ TYPES = {"Float32": "f", "Float64": "d", "Int32": "i", "Int64": "q", "UInt8": "B
 
 
 class Case:
-    def __init__(self, name, title, text, methods=()):
-        self.name, self.title, self.text, self.others = name, title, text, methods
+    def __init__(self, name, title, methods=()):
+        self.name, self.title, self.others = name, title, methods
         parser = argparse.ArgumentParser(description=title)
         parser.add_argument("--tobiuo", required=True, help="the program")
         parser.add_argument("--size", choices=["smoke", "reference"], default="smoke")
@@ -283,7 +283,7 @@ class Case:
         seconds = self.earlier + time.monotonic() - self.begin
         made = validation.made_line(self.commit, self.machine, self.program_hash, seconds,
                                     validation.Tree().stamps(self.name, self.methods))
-        lines = [f"# {self.title}", "", validation.fill(made), "", validation.fill(self.text), "",
+        lines = [f"# {self.title}", "", validation.fill(made), "", validation.Tree().read_text(self.name), "",
                  "| figure | value | goal | result |", "|---|---|---|---|"]
         lines += ["| %s |" % " | ".join(row) for row in self.rows]
         if self.plots:

@@ -2,8 +2,10 @@
 """The pages of docs/validation: how one is written, when it is older than what it judges, their index.
 
 usage: validation.py list     cases to be made anew, a line each; on stderr how many and how long it takes
-       validation.py mark     writes into each page and the index whether it is older than its method or case
-       validation.py check    warns of pages that are older; fails where a sentence of meanings.csv does not fit
+       validation.py mark     writes into each page and the index whether it is older than its method or case,
+                              and into each page its text (test/physics/CASE/page.md), which may change any time
+       validation.py check    warns of pages that are older; fails where a page has another text than page.md, or
+                              a sentence of meanings.csv does not fit
 
 A page records two kinds of stamps. Case: the files of test/physics/CASE and of the folders that its run.py names.
 Method: the state hashes of the golden scenes of that method (test/golden), which change exactly when its
@@ -76,6 +78,10 @@ class Tree:
                  if path.is_file() and path.suffix not in (".md", ".png", ".pyc")]
         return digest(part for path in files for part in (path.name.encode(), path.read_bytes()))
 
+    def read_text(self, case):
+        """What the page says before its table; no part of a stamp."""
+        return fill((self.root / "test/physics" / case / "page.md").read_text())
+
     def method_stamps(self, method):
         """The stamp that a page made now gets, then those of the times when there were fewer scenes. Scenes without
         "method" are of the first one."""
@@ -124,9 +130,16 @@ class Page:
         changed = [name for name, stamp in self.stamps.items() if stamp not in self.tree.now(self.case, name)]
         return "This page is older than its " + " and its ".join(changed) if changed else ""
 
+    def told(self):
+        """Page with the text of page.md."""
+        made, table = MADE.search(self.text), self.text.find("\n| figure |")
+        if not made or table < 0:
+            return self.text
+        return self.text[:made.end()] + self.tree.read_text(self.case) + "\n" + self.text[table:]
+
     def marked(self):
-        """The text with what must be said of its age."""
-        text, older = OLDER.sub("", self.text, count=1), self.older()
+        """The page with its text, and what must be said of its age."""
+        text, older = OLDER.sub("", self.told(), count=1), self.older()
         if not older:
             return text
         note = textwrap.fill(f"**{older}.**", 98).replace("\n", "\n> ")
@@ -232,6 +245,10 @@ def check(tree):
               f"test/physics/validation.py mark writes it: {', '.join(wrong)}")
     print(to_do(tree)[1])
     for page in pages:
+        if page.told() != page.text:
+            print(f"docs/validation/{page.case}.md: its text is not that of test/physics/{page.case}/page.md; "
+                  "test/physics/validation.py mark writes it")
+            failed = 1
         fault = render(meanings.get(page.case, ""), page)[1]
         if fault:
             print(f"test/physics/meanings.csv: {page.case}: {fault}")

@@ -6,10 +6,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import ROOT, Case, mean, read_table
 
-case = Case("archimedes", "Archimedes", """
-A sphere and a cube, 0.1 m across, held in the middle of a tank of 0.3 x 0.3 m, 0.3 m deep. Force: the mean vertical force of
-the water from 1 s to the end (2 s), over rho g times the volume of the mesh. Held bodies only; free ones are the case
-"floating".""")
+case = Case("archimedes", "Archimedes")
 
 G, RHO, SIZE = 9.81, 1000, 0.1
 

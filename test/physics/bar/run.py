@@ -7,11 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, crossings, mean, read_series, read_vtu
 
-case = Case("bar", "Vibrating bar", """
-L = 25 m, E = 100 Pa, density 1 kg/m3, nu = 0, slip side at x = 0; starts at v = 0.1 sin(pi x/2L) m/s, each column
-of particles with its own. Linear theory: period 4 L sqrt(rho/E) = 10 s; with u = 0.1 x 10/(2 pi) = 0.1592 m at the free
-end, amplitudes 0.1013 m of the centre of mass (2 u/pi) and 0.1125 m of the midpoint. Two cells high in 2-D (two by two in
-3-D). Period from the crossings of zero of the centre of mass, amplitudes the largest of the first half period. Goal: 1 %.""")
+case = Case("bar", "Vibrating bar")
 
 L, SPEED = 25.0, 0.1
 

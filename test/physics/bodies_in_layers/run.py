@@ -7,18 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_series, read_table, read_vtu
 
-case = Case("bodies_in_layers", "Bodies in water under oil", """
-Water, 1000 kg/m3, under a lighter liquid, and bodies 0.1 m across, by isph. **At rest**: a square and a cylinder
-(of 48 corners) that are held with their middle in the interface, in a full vessel of 0.4 m; force over the weight
-that they displace of both liquids, after 0.5 s, and what walls and body carry of the weight of all. **Let go**: the
-cylinder of another density at rest there, in a full vessel of 0.8 m; velocity after 0.04 s over t g (m - rho)/(m +
-rho), m the mean density of both liquids. The dipole of an unbounded liquid has no pressure in the interface, so that
-either half has its own added mass. **Driven**: the cylinder goes up and down by 2 mm ten times a second; the part of
-the force in phase with its acceleration, over that added mass and what the interface takes. **Buoy**: a square (turns
-locked) in a tank 0.6 m wide with 0.25 m of either, let go 0.2 of its height too low; depth of its lower face under the
-level that the volumes of water and body give, mean over the last two fifths; and a cube in 3-D. The oil has a free
-surface there: in full vessels bodies that move for seconds gain speed by isph, in one liquid too. Eisph lets the
-interface sink, so that bodies at rest there feel less.""")
+case = Case("bodies_in_layers", "Bodies in water under oil")
 
 G, RHO, SIDE = 9.81, 1000, 0.1
 MESH = str(case.folder.parents[1] / "meshes" / "cylinder.obj")

@@ -6,12 +6,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, crossings, mean, read_series, read_vtu
 
-case = Case("central_drop", "A drop in a central force field", """
-A disc of liquid (2-D, R = 0.5 m, 1000 kg/m3, no viscosity) is drawn to its middle by Omega^2 r, Omega = 4 1/s, and
-starts with u = A x, v = -A y, A = Omega. It stays an ellipse with half axes a and b: a' = A a, b' = -A b,
-A' = (A^2 + Omega^2)(b^2 - a^2)/(a^2 + b^2) (Monaghan and Rafiee 2013). Reference here: these equations by
-Runge-Kutta of order 4. Half axes come from second moments, a^2 = 4 <x^2>. Period: from the first to the third time at
-which the drop is round, and so on. Energy: kinetic, and Omega^2 r^2/2 per mass.""", methods=("dfsph", "eisph", "wcsph"))
+case = Case("central_drop", "A drop in a central force field", methods=("dfsph", "eisph", "wcsph"))
 
 RADIUS, OMEGA = 0.5, 4.0
 

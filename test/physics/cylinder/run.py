@@ -7,14 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_table
 
-case = Case("cylinder", "Towed cylinder", """
-A cylinder D = 40 mm is towed at U = 0.1 m/s through liquid (1000 kg/m3); 2-D. Drag coefficient: force per metre over
-rho U^2 D / 2. Re 40: 1.52 (S. C. R. Dennis and G.-Z. Chang, J. Fluid Mech. 42 (1970) 471), mean over the last third of
-the way. Re 100: 1.33, Strouhal number f D / U 0.164 to 0.167, root mean square of the lift coefficient 0.22 to 0.24 (the common values
-of computations; a wake that is still symmetric has a drag of 1.06). Vortices that nobody disturbs are shed late: in the first
-6 D of its way, one period, this cylinder swings aside by 0.2 D and back. Frequency: the sine that fits the lift best after
-9 D; means over the whole periods before the end. Reference size: 30 x 16 D, periodic along the way, 8 particles across; 16 D of way, and
-27 D at Re 100, where it stands 1.5 D before the side that it came from.""", methods=("isph",))
+case = Case("cylinder", "Towed cylinder", methods=("isph",))
 
 D, U, RHO = 0.04, 0.1, 1000
 wide, high, across = case.pick((12, 8, 8), (30, 16, 8))

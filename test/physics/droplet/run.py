@@ -7,14 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_series, read_table, read_vtu
 
-case = Case("droplet", "Drops", """
-Water, 0.0728 N/m, R = 5 mm, no gravity, support 3 d; R is that of the volume of the particles. Jump: mean pressure further
-than 3 d below the surface, mean over the second half of the run, against 2 sigma/R (viscosity 0.02 Pa s). Stray motion:
-kinetic energy over surface energy at the end; momentum over the sum of |F| dt, |F| from the outputs. Oscillation: from an
-ellipsoid, axes 1.03 to 0.985 (2-D: 1.03 to 0.971), water; half a period between crossings of zero of the difference of
-the second moments, against omega^2 = n(n-1)(n+2) sigma/(rho R^3), n = 2 (2-D: n(n^2-1) sigma/(rho R^3)) [Rayleigh 1879].
-Contact: a 2-D half disc on a floor, 0.1 Pa s, angle of the circular segment with the same area and centre of mass, mean
-over the second half.""")
+case = Case("droplet", "Drops")
 
 SIGMA, RHO = 0.0728, 1000
 

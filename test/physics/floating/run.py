@@ -9,15 +9,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_table
 
-case = Case("floating", "Floating bodies", """
-Bodies that move by forces in dfsph, 0.1 m across. **Sphere in a full vessel** of 0.4 m, let go at rest: velocity after 0.1 s
-(0.04 s for the light one, which is soon fast enough for drag) over t g (rho_s - rho)/(rho_s + rho/2). The added mass
-in a vessel of this size is a few per cent more than the rho/2 of an unbounded liquid; a **cylinder**, 2-D, in a vessel of 0.8 m: rho
-in the place of rho/2. **Sphere under a free surface**
-(tank of 0.3 x 0.3 m, 0.3 m deep), held for 0.4 s, then let go: mean acceleration between 5 and 15 ms. **Cube** (turns
-locked) in a tank of 0.3 x 0.3 m and 0.2 m of water, let go at a draft of 0.6 of its height: draft below the
-level that the volumes of water and cube give; mean over the last fifth. **Momentum**: a cube shot into a block of
-water in a periodic box, no gravity. **Restart**: hash of the state of a run, with one thread, with four, and resumed.""")
+case = Case("floating", "Floating bodies")
 
 G, RHO, SIDE = 9.81, 1000, 0.1
 

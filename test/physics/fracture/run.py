@@ -7,15 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, read_series, read_table, read_vtu
 
-case = Case("fracture", "Bars and beams that break", """
-1000 kg/m3, nu = 0.3, strength f = 20 kPa. Bar: E = 1 MPa, fracture energy G = 30 J/m2 (a crack is through when it has opened by
-2 G/f = 3 mm), 40 mm between unbreakable ends of the same stiffness, 20 mm high (3-D: and wide), pulled at 0.05 m/s from a no-slip side
-by a block too heavy to slow down; particles at two places in the grid, and scattered ones. Beam: E = 5 MPa, G = 10 J/m2, 40 mm high, notch
-of 20 x 15 mm in the middle (narrower than two cells it would be closed), bent by frictionless rollers 80 mm apart, at 0.025 m/s.
-Energy of damage: what eq. (19) of theory/mlsmpm.md makes of the particles' damage, over G times the section. Goals: 1
-within 15 %, since the place of the lattice in the grid changes the width of the band by about that; two grids within 10 % of each
-other, for the beam 15 %. Largest mean stress of a bar: the strength within 5 %. Work of the pull includes elastic waves
-that the break leaves behind and the pull of broken particles that still share nodes.""")
+case = Case("fracture", "Bars and beams that break")
 
 E, NU, F, G, RHO = 1e6, 0.3, 2e4, 30.0, 1000
 SPEED = 0.05

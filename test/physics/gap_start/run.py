@@ -6,10 +6,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_table
 
-case = Case("gap_start", "Water that begins beside the walls", """
-A pool whose water begins 1.5 spacings from the sides and the floor, as scenes of the Taichi program do, and the same
-water begun at the sides. d = 20 mm, 0.6 m wide (3-D: 0.6 x 0.4 m). Level: the mean over the last second of 4 s of
-three gauges (2-D) or one, over the volume of all particles divided by the floor.""")
+case = Case("gap_start", "Water that begins beside the walls")
 
 D, END = 0.02, 4
 

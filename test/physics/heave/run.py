@@ -8,12 +8,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, read_table, write_quarter_sphere
 
-case = Case("heave", "Heave decay of a sphere", """
-A sphere of R = 5 m and 261.8e3 kg floats half submerged in deep water (1000 kg/m3, 9.81 m/s2); lifted by 1 m and let go,
-it heaves, and its waves take the motion away. A quarter of it between two slip walls, moving up and down only, in dfsph
-without viscosity. Against the mean of the six codes of IEA-OES Task 10 [Wendt et al., EWTEC 2017], which differ among
-themselves by 2 % in the period, from the first extremum to the third, and by 3, 3 and 6 % in the heights of the extrema. Far walls at
-27 m, 20 m deep (smoke size: 15 and 10 m).""")
+case = Case("heave", "Heave decay of a sphere")
 
 R, G, RHO = 5.0, 9.81, 1000
 # Time (s) and height (m) of the first three extrema: mean over ProteusDS, InWave, Marin, NREL CFD, WavEC and InWave+H.

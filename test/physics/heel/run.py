@@ -7,11 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_table
 
-case = Case("heel", "Heel of a hull", """
-A hull, 2-D, 0.3 m wide, 0.2 m high, that floats 0.1 m deep in a tank of 1.5 m, by dfsph and isph. GM = KB + BM - KG, KB = 0.05 m,
-BM = 0.3^2/(12 x 0.1) m = 0.075 m. **Heel**: `centre_of_mass` 0.05 m above the keel, GM = 0.075 m; a moment of
-W GM sin 4 degrees acts from the start, and `air_resistance` of 4 /s ends the rolls; mean angle over the last third. **Capsize**:
-`centre_of_mass` at 0.15 m, GM = -0.025 m.""")
+case = Case("heel", "Heel of a hull")
 
 G, RHO, WIDE, HIGH, DRAFT, KEEL = 9.81, 1000, 0.3, 0.2, 0.1, 0.2
 BM, WEIGHT = WIDE**2/(12*DRAFT), RHO*G*WIDE*DRAFT

@@ -6,11 +6,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_series, read_table, read_vtu
 
-case = Case("hydrostatic", "Hydrostatic tank", """
-Water stands in a tank that it fills in x and y. Wall force: the largest deviation from the weight at any
-output after the first 0.1 s. Bottom pressure: the wall force over the bottom's area, against rho g H,
-mean over the last half second. Level: from the centre of mass, which lies at half the depth, and from the
-mean height of the topmost particle of each column 2 d wide. Energies from history.csv at the end.""")
+case = Case("hydrostatic", "Hydrostatic tank")
 
 G, RHO = 9.81, 1000
 D = case.pick(0.008, 0.006)

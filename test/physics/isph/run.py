@@ -9,19 +9,7 @@ sys.path[:0] = [str(PHYSICS), str(PHYSICS / "standing_wave")]
 import period
 from harness import Case, fit_line, interpolate, mean, read_series, read_table, read_vtu
 
-case = Case("isph", "Incompressible SPH", """
-`"method": "isph"` with its defaults (support 2.5 d) beside dfsph with its own, where both are named; 2-D, slip.
-Columns, 30 d wide and 10 to 100 d deep, start on a lattice without pressure. Floor: the force on it against the weight,
-mean over the last half. Level: rise of the centre of mass, doubled. Shaken: particles start with random velocities, up to so
-much along each axis, without viscosity. Iterations: of the first step, from no pressure to
-a true residual of 1e-6. Dam break: a = n2 = 1 in a box 4 a long, inviscid; front Z against T = t sqrt(g/a) of potential flow
-(dam_break); energy against that of the start. Patch: a square of 1 m turns at 1 rad/s without gravity (A. Colagrossi,
-PhD thesis, Rome 2005), to t omega = 4. Main body: the largest set of particles linked within 1.8 d. Wave and vortex: as
-in standing_wave, taylor_green; amplitude: the root of the kinetic energy. Box: 8 d high, held in a pool; buoyancy over
-rho g V, mean over the last half.
-
-`"method": "eisph"` runs the same dam break and column with one sweep per step, and with as many in pseudo-time as the
-step of isph needs.""")
+case = Case("isph", "Incompressible SPH")
 
 G, RHO = 9.81, 1000
 

@@ -8,15 +8,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_table
 
-case = Case("isph_bodies", "Floating bodies in water of isph", """
-Bodies that move by forces in isph (or eisph, where it says so), 0.1 m across, mostly in 2-D. **Cylinder in a full vessel**
-of 0.8 m, let go at rest: velocity after 0.1 s (0.04 s for the light one, which is soon fast enough for drag) over t g (rho_s
-- rho)/(rho_s + rho), the added mass of an unbounded liquid; **sphere**, 3-D, in one of 0.4 m: rho/2. **Cylinder under a free
-surface** (tank 0.8 m wide, 0.6 m deep, its centre 0.3 m deep), held for 0.2 s by its control program, then let go: mean
-acceleration between 10 and 30 ms. **Square** (turns locked) in a tank 0.6 m wide with 0.3 m of water, let go at a draft of
-0.6 of its height (the light one 0.2): draft below the level that the volumes of water and square give; mean over the last
-fifth. **Stone**: a square of 2.5 times the density of water sinks to the floor; how deep it goes into the floor.
-**Restart**: hash of the state with one, two, four threads, and resumed.""")
+case = Case("isph_bodies", "Floating bodies in water of isph")
 
 G, RHO, SIDE = 9.81, 1000, 0.1
 MESHES = case.folder.parents[1] / "meshes"

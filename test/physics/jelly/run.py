@@ -7,11 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_table
 
-case = Case("jelly", "Free bodies on jelly and in water", """
-Jelly: a rigid cube (0.1 m, 500 kg/m3) falls 0.1 m onto a block of jelly (0.3 m wide, 0.1 m deep, E = 5e4 Pa, on the floor), bounces
-and comes to rest (jelly damped at 5 /s). At rest the jelly carries its weight; its centre is half a side above the jelly's top,
-less the indentation; it never had more energy than at the start. Water: the cube (500 kg/m3) floats in mlsmpm water (0.2 m
-deep, bulk modulus 2e5 Pa, damped at 4 /s); draft half its height. 2-D at smoke size.""")
+case = Case("jelly", "Free bodies on jelly and in water")
 
 SIDE, GRAVITY, DENSITY = 0.1, 9.81, 500
 

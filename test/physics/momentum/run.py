@@ -6,11 +6,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, read_table
 
-case = Case("momentum", "Momentum balance", """
-Water moves and sloshes in a box that is periodic in x and y and has a slip floor and lid. Every step is an output,
-so that history.csv has momentum P, wall force W (of the water on the walls) and step dt of every step. Along
-x and y there is no external force: P must stay. Along z, P changes by (-m g - W_z) dt. The scale is the sum
-of |F| dt, F over particles (force_sum), but at least the weight.""")
+case = Case("momentum", "Momentum balance")
 
 END = case.pick(0.05, 0.5)
 out = case.run("box", "--until", END, *([] if case.smoke else ["--spacing", 0.004]))

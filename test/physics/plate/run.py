@@ -6,13 +6,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_series, read_vtu
 
-case = Case("plate", "Friction of a floor", """
-Water 40 mm deep starts at U = 2 m/s over a no-slip floor; periodic along it. A turbulent layer grows from the floor: with the 1/7 power
-profile and Blasius' stress 0.0225 rho U^2 (nu / U d)^(1/4) [H. Schlichting, Boundary-Layer Theory] its thickness after t is
-d^(5/4) = 0.225 U^(3/4) nu^(1/4) t, 16.6 mm after 0.5 s, and the momentum lost per area rho U d / 8. The law of the wall, eq. (14b), knows
-only the particles next to the floor; what carries the loss up is what this case looks at: with too little of that the first layer
-would stop and the stress with it. Loss: from the mean speed of all particles. The 15 % of the goal were
-chosen after the first figures, which they split.""")
+case = Case("plate", "Friction of a floor")
 
 U, DEPTH, NU = 2.0, 0.04, 1e-6
 

@@ -6,10 +6,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, read_table
 
-case = Case("resting_bodies", "Rigid bodies that bounce and rest", """
-Ten cubes of 0.1 m stand on each other, at 60 steps a second too; three balls fall 0.5 m onto the floor and come back
-to e^2 of that height. In the end everything rests: no body creeps, and the energy falls to nothing. The scale of
-the energy is m (g dt)^2/2, what gravity gives a body in one step before contact takes it away.""")
+case = Case("resting_bodies", "Rigid bodies that bounce and rest")
 
 
 def column(table, body, name):

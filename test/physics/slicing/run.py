@@ -7,16 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_table, write_blade
 
-case = Case("slicing", "Pushing and drawing a blade", """
-Block of W = 30 mm along the edge, 30 mm wide and high (1000 kg/m3, E = 1 MPa, nu = 0.3) on a no-slip floor, no gravity; blade of 1 mm,
-longer than the block, without friction at its faces, R = 250 J/m2. Drawn: pressed down with 0.25 m/s and moved along its edge with xi
-times that. Atkins, Xu & Jeronimidis 2004, "Cutting, by 'pressing and slicing,' of thin floppy slices of materials illustrated by
-experiments on cheddar cheese and salami", J. Mater. Sci. 39: 2761: without friction the edge takes F_push = R W/(1 + xi^2) and F_slice =
-R W xi/(1 + xi^2). Means over depths from 30 to 80 % of the height; the block's velocities decay with 1000/s, because beyond xi = 1
-F_slice falls with the speed of drawing, so that the block swings by itself and mean forces are no longer those at the mean speed
-(stated). Free: a blade of 20 g, which can move in its plane only, starts with its edge on the block under a force that rises for 0.05 s
-(put on at once, a force weighs twice) and stays then: less than R W it is stopped; with the same force along the edge as well, the
-resultant cuts. Depth cut: fracture_work/(R W).""")
+case = Case("slicing", "Pushing and drawing a blade")
 
 R, WIDE, PUSH, MASS = 250, 0.03, 0.25, 0.02
 cells = case.pick(6, 12)

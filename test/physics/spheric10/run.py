@@ -7,15 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, mean, read_table
 
-case = Case("spheric10", "Sloshing impacts in a rolling tank (SPHERIC test 10)", """
-A tank 900 mm long and 508 mm high holds 93 mm of water and rolls by 4 degrees about the middle of its floor with a period of
-1.63 s, 0.85 of its first mode's; 2-D, slip. Sensor 1 sits on the left wall at the height of the still water. Measured: the first
-four peaks of its pressure over 100 repeats, mean and standard deviation, 37.1 (7.3), 48.2 (15.0), 46.9 (17.1) and 46.4 (13.2)
-mbar (SPHERIC test 10, water, 62 mm wide; E. Botia-Vera, A. Souto-Iglesias, G. Bulian, L. Lobovsky, 5th SPHERIC workshop, 2010, for the
-first; the others from the benchmark's table of repeats). The measured history of pressure and the recorded roll are not at hand:
-here the roll rises in a fifth of a period, and times of impacts are compared with one another only. Air is computed where a
-row says so, as a second fluid of 1.2 kg/m3 and 1.8e-5 Pa s, until after the first impact, by isph, which knows such ratios of
-densities. Without it a cavity that the wave encloses at the wall closes at once, and the pressure is a blow of one or two steps.""",
+case = Case("spheric10", "Sloshing impacts in a rolling tank (SPHERIC test 10)",
             methods=("isph", "wcsph"))
 
 LENGTH, HEIGHT, DEPTH, ROLL, PERIOD = 0.9, 0.508, 0.093, 4.0, 1.63

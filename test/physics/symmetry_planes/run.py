@@ -6,10 +6,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, read_table, write_quarter_sphere
 
-case = Case("symmetry_planes", "Planes of symmetry", """
-A sphere of 0.1 m, twice as dense as water, is let go in the middle of a full vessel of 0.4 m without viscosity, and moves
-up and down only. Whole, and a quarter of it in a quarter of the vessel, whose slip walls are planes of symmetry. Velocities
-after 0.1 s. Theory: t g (rho_s - rho)/(rho_s + rho/2), the added mass of an unbounded liquid.""")
+case = Case("symmetry_planes", "Planes of symmetry")
 
 SIDE, HALF, G, RHO, DENSITY, END = 0.1, 0.2, 9.81, 1000, 2000, 0.1
 FALL = END*G*(DENSITY - RHO)/(DENSITY + RHO/2)

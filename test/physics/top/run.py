@@ -8,9 +8,7 @@ from math import log10
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case
 
-case = Case("top", "Free rigid body", """
-A body with three different moments of inertia (1.5, 2, 2.9 kg m2 and products of inertia) spins without forces, omega dt = 0.05,
-1e5 steps: energy and angular momentum stay. A symmetric top precesses about its momentum by |L|/I: the phase is of second order.""")
+case = Case("top", "Free rigid body")
 
 text = case.unit("test_rigid")
 energy, momentum, length = (float(v) for v in re.search(r"energy (\S+), momentum (\S+), \|q\|\^2 - 1 (\S+)", text).groups())

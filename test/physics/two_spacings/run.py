@@ -9,17 +9,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import ROOT, Case, mean, read_table
 
-case = Case("two_spacings", "Two spacings", """
-Wing: a plate of 4 x 60 x 40 mm moves broadside at 0.4 m/s through a closed box of water; force along its way, mean
-over the run from 0.1 s on. Fish: scenes/flying_fish with scripted motion, at four spacings; it swims towards -x. Forces on the
-fish: means over its plunge (vertical, 0.05 to 0.25 s, up to 8 N) and over the second half of the run, when it taxis with its tail in the water (some
-tenths of a newton). Only the spacing changes between the runs; no constant does.
-Spacings of the fish are such that whole layers of particles hold the same water in each: its tail reaches 5 cm below the surface, and
-8 and 6 mm have 2.4 and 1.1 % too much, a level 4.5 and 2 mm higher. The fish slips: all its force is pressure. Of the means 0.51 N in the plunge and
-0.029 N with the tail in the water are buoyancy, from the mesh below the level; what changes is the rest. Scatter: the same run at 10 mm with the
-fish's whole way moved along x and y by shares of a spacing, a different lattice for the same flow; standard deviation of the four means over their
-mean. The difference of two single runs scatters 1.4 times as much. Why forces shrink with the spacing:
-[decision 35](../decisions/0035-plates-act-wider-than-they-are.md).""")
+case = Case("two_spacings", "Two spacings")
 
 
 def force(out, name, axis, begin, end=1e9):

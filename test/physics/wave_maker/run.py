@@ -8,14 +8,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, read_table
 from waves import G, amplitude, solve, split, wave_number
 
-case = Case("wave_maker", "Wave maker, beach and solitary wave", """
-A piston makes regular waves on water of depth h, 2-D, inviscid; its stroke follows from the height H by the transfer function
-of F. Biesel (Houille Blanche 6 (1951) 152), with a ramp of two periods. Gauges from 1.5 h on, over a length L of a wave: the
-first harmonics of the last two periods, split into waves that come and that go back by least squares over the gauges
-(E. P. D. Mansard and E. R. Funke, Proc. 17th Coastal Eng. Conf. (1980) 154). Height: that of the waves that go, over H. The
-beach is a damping zone of a length L at the end, with a rate of ten over the period. A solitary wave of 0.3 h, by D. G.
-Goring (Tsunamis, Caltech KH-R-38, 1978): its height 20 depths further on, over that at 5 depths. `wcsph` and `eisph` take
-twenty times the steps; they compute one period and the solitary wave on ten layers of particles.""",
+case = Case("wave_maker", "Wave maker, beach and solitary wave",
             methods=("wcsph", "isph", "eisph"))
 
 DEPTH = 0.3

@@ -6,11 +6,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import ROOT, Case, mean, read_table
 
-case = Case("wcsph", "Weakly compressible SPH", """
-Sound: a 2-D column of depth H between periodic sides takes its weight at once; the force on its floor then swings with
-the period 4 H/c of an open column, c = sqrt(exponent stiffness / density), damping off, mean of the first two periods
-between crossings of the weight. Tank: as in hydrostatic, damping on; after the first waves the walls carry the weight.
-Momentum: the scene of the momentum case, same measure, scale the sum of |F| dt.""")
+case = Case("wcsph", "Weakly compressible SPH")
 
 G, RHO, B, GAMMA = 9.81, 1000, 50000, 7
 SOUND = (GAMMA*B/RHO)**0.5

@@ -7,15 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import ROOT, Case, read_series, read_vtu
 
-case = Case("yield_stress", "Liquids with a yield stress", """
-**Channel**: 2-D, periodic, no-slip sides 0.04 m apart, 1000 kg/m3, 2 m/s2 along it. A Bingham liquid of 1 Pa s and 10 Pa, one of
-flow index 0.5 with 10 Pa s^0.5. The flow after 1 s over that of theory, exact for both.
-
-**Slump**: a cylinder, 0.2 m high and wide, 2000 kg/m3, 100 Pa s, stands free on a no-slip floor at the start. Its yield stress is
-0.1 or 0.2 of rho g H. What it has lost of its height on the axis after 4 s, over its height, against 1 - 2 t (1 - ln 2t), with t
-the yield stress over rho g H [N. Pashias, D. V. Boger, J. Summers and D. J. Glenister, J. Rheol. 40 (1996) 1179]. That formula
-takes plane sections, no inertia and the largest shear stress. The law here is that of von Mises: sqrt 3 stands for 2, which gives
-0.523 and 0.286. The formula is known to be off for high yield stresses [N. Roussel and P. Coussot, J. Rheol. 49 (2005) 705].""")
+case = Case("yield_stress", "Liquids with a yield stress")
 
 HALF, PULL, HIGH, RHO, G = 0.02, 2, 0.2, 2000, 9.81
 
