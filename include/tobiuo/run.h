@@ -121,19 +121,19 @@ TOBI_API tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_er
    resumable. */
 TOBI_API void tobi_run_free(tobi_run *run);
 
-/* The tables of a run; probes.csv has columns by the kinds of its sensors, lines.csv and joints.csv for each
-   line and joint. */
+/* The tables of a run; probes.csv has columns by the kinds of its sensors, lines.csv, joints.csv and
+   porous_zones.csv for each line, joint and zone. */
 typedef enum tobi_table {
     TOBI_TABLE_HISTORY, TOBI_TABLE_BODIES, TOBI_TABLE_POINT, TOBI_TABLE_LEVEL, TOBI_TABLE_PATCH,
     TOBI_TABLE_RUN_UP, TOBI_TABLE_FLOW, TOBI_TABLE_VOLUME,     /* in the order of tobi_probe_kind */
-    TOBI_TABLE_SOLIDS, TOBI_TABLE_LINES, TOBI_TABLE_JOINTS
+    TOBI_TABLE_SOLIDS, TOBI_TABLE_LINES, TOBI_TABLE_JOINTS, TOBI_TABLE_POROUS
 } tobi_table;
 typedef struct tobi_column {
     const char *name, *unit;        /* "1": without a unit                                      */
     const char *doc;                /* "": as the column before                                 */
 } tobi_column;
-/* The columns of a table by index, NULL past the end. In probes.csv, lines.csv and joints.csv the names
-   follow that of the probe, line or joint and "_". */
+/* The columns of a table by index, NULL past the end. In tables of probes, lines, joints and zones the names
+   follow that of the probe, line, joint or zone and "_". */
 TOBI_API const tobi_column *tobi_run_column(tobi_table table, int index);
 /* The unit of a column's values in a world of 2 or 3 dimensions: in 2-D "N" is "N per m", "m3" is "m2". */
 TOBI_API const char *tobi_run_unit(const char *unit, int dimension);

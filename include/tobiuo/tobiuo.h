@@ -61,6 +61,7 @@ TOBI_API tobi_reference_def tobi_default_reference_def(void);
 TOBI_API tobi_gravity_def tobi_default_gravity_def(void);
 TOBI_API tobi_central_def tobi_default_central_def(void);
 TOBI_API tobi_damping_def tobi_default_damping_def(void);
+TOBI_API tobi_porous_def tobi_default_porous_def(void);
 
 /* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def, ...), NULL = its
    defaults. On failure *world is NULL and err says why. */
@@ -152,6 +153,12 @@ TOBI_API tobi_status tobi_world_set_gravity(tobi_world *world, const double grav
 /* Before the start. A damping zone; TOBI_INVALID for boxes without an inside and for negative rates,
    TOBI_UNSUPPORTED in mlsmpm and for more than 16. */
 TOBI_API tobi_status tobi_world_add_damping(tobi_world *world, const tobi_damping_def *def, tobi_error *err);
+/* Before the start, after the fluids. A porous zone; TOBI_INVALID for boxes without an inside, outside of the
+   domain or in another zone, and for one that has none or two kinds of contents; TOBI_UNSUPPORTED in mlsmpm
+   and for more than 16. */
+TOBI_API tobi_status tobi_world_add_porous(tobi_world *world, const tobi_porous_def *def, tobi_error *err);
+/* Name and, if info is not NULL, what it does; NULL past the end. */
+TOBI_API const char *tobi_world_porous(const tobi_world *world, int zone, tobi_porous_info *info);
 /* Before the start. Gravity as a function of time; TOBI_INVALID for numbers out of range and rows that go
    back in time, TOBI_NOT_FOUND and TOBI_IO for the file. Checkpoints do not hold it. */
 TOBI_API tobi_status tobi_world_set_gravity_in_time(tobi_world *world, const tobi_gravity_def *def,
@@ -181,7 +188,7 @@ TOBI_API double  tobi_world_time(const tobi_world *world);
 TOBI_API const tobi_step_info *tobi_world_info(const tobi_world *world);
 TOBI_API int     tobi_world_body_count(const tobi_world *world);
 TOBI_API tobi_status tobi_world_body(const tobi_world *world, int body, tobi_body_info *info);
-/* Energy and power of a body; the same of all bodies, joints and lines. Powers are known after a step. */
+/* Energy and power of a body; of bodies, joints, lines, porous zones. Powers are known after a step. */
 TOBI_API tobi_status tobi_world_body_energy(const tobi_world *world, int body, tobi_body_energy *energy);
 TOBI_API tobi_status tobi_world_energy(const tobi_world *world, tobi_energy *energy);
 TOBI_API const char *tobi_world_body_name(const tobi_world *world, int body);

@@ -8,6 +8,7 @@
 #include "tobiuo/base.h"
 #include "tobiuo/kinds.h"
 #include "tobiuo/methods.h"
+#include "tobiuo/porous.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -582,6 +583,7 @@ typedef struct tobi_energy {
     double joint_power;           /* W, that dampers and motors of joints take from the bodies        */
     double line_power;            /* W, that damping of lines takes from them                         */
     double force_power;           /* W, that constant forces and control programs give them           */
+    double porous_power;          /* W, that porous zones take from liquids                           */
 } tobi_energy;
 
 #ifdef __cplusplus

@@ -7,6 +7,7 @@
 #include "core/damping.h"
 #include "core/opening.h"
 #include "core/plane.h"
+#include "core/porous.h"
 #include "core/soft.h"
 #include "tobiuo/tobiuo.h"
 
@@ -31,6 +32,8 @@ typedef struct tobi_simulation {
     int opening_count;
     tobi_damping damping[TOBI_DAMPING_LIMIT];
     int damping_count;
+    tobi_porous porous[TOBI_POROUS_LIMIT];
+    int porous_count;
     tobi_acceleration acceleration; /* besides gravity, at the middle of the step             */
     double acceleration_change;     /* m/s2, largest of the run in the liquid of the start, without gravity */
     double acceleration_most[3];    /* m/s2, of the whole run with gravity; 0: gravity alone  */

@@ -1,6 +1,7 @@
-/* The columns of history.csv, bodies.csv, solids.csv, probes.csv, lines.csv and joints.csv: name, unit,
-   value, meaning. One line makes the header, the row, `tobiuo describe history` and docs/tables.md, so that
-   they cannot disagree. Drawback: values are expressions, which mean something only in the writers. */
+/* The columns of history.csv, bodies.csv, solids.csv, probes.csv, lines.csv, joints.csv and porous_zones.csv:
+   name, unit, value, meaning. One line makes the header, the row, `tobiuo describe history` and
+   docs/tables.md, so that they cannot disagree. Drawback: values are expressions, which mean something only
+   in the writers. */
 #pragma once
 
 /* H(name, unit, kind, value, meaning): history.csv. `i` is the last step's info, `s` the sums since the last
@@ -96,6 +97,11 @@
       "Particles that a surface held back by their position in the last step.") \
     H("pieces", "1", int, pieces->count, "Connected pieces of the solids.") \
     H("fragments", "1", int, pieces->fragments, "Pieces of fewer particles than a grid cell holds.")
+
+/* The last column of history.csv, which it has with porous zones alone. */
+#define HISTORY_POROUS(H) \
+    H("porous_work", "J", real, tobi_works_porous(run), \
+      "Taken from liquids by porous zones since the start, where there are any.")
 
 /* B(name, unit, value, meaning): bodies.csv after time and name, all real; V3 for a vector. An empty meaning:
    that of the column before. Means are over the time since the last output. */
@@ -201,3 +207,12 @@
     V("power", "W", i.power, \
       "Taken from the bodies by damper and motor, where it has any; below 0 the motor drives.") \
     V("work", "J", run->works.joint[k], "Sum of power times time since the start.")
+
+/* V(name, unit, value, meaning): porous_zones.csv after time, for each zone; `i` is its info. */
+#define POROUS(V) \
+    V("force_x", "N", i.force[0], "Force of the liquid on the contents of the zone, in the last step.") \
+    V("force_y", "N", i.force[1], "") \
+    V("force_z", "N", i.force[2], "") \
+    V("power", "W", i.power, "Taken from the liquid, in the last step.") \
+    V("work", "J", run->works.porous[k], "Sum of power times time since the start.") \
+    V("volume", "m3", i.volume, "Of the liquid in the zone, as if its contents took no room.")

@@ -33,9 +33,9 @@ enum { TOBI_BODY_FORCES = 7 };
 typedef struct tobi_body_tally { double time, impulse[TOBI_BODY_FORCES][3]; } tobi_body_tally;
 typedef struct tobi_solid_tally { double time, impulse[3]; } tobi_solid_tally;    /* of liquids */
 
-/* Work since the start, J: of each body as tobi_body.power, taken by each joint, by all lines; in 2-D how far
-   each body has turned, rad. */
-typedef struct tobi_works { double (*body)[TOBI_POWERS], *joint, lines, *angle; } tobi_works;
+/* Work since the start, J: of each body as tobi_body.power, taken by each joint, by all lines, by each porous
+   zone; in 2-D how far each body has turned, rad. */
+typedef struct tobi_works { double (*body)[TOBI_POWERS], *joint, lines, *angle, *porous; } tobi_works;
 
 /* One field to write. */
 typedef struct tobi_record_field {
@@ -132,7 +132,7 @@ struct tobi_run {
     int series;
     int64_t listed, missing;              /* outputs in the lists; files that should be there */
 
-    tobi_csv *history, *bodies, *solids, *probes, *lines, *joints;   /* NULL where the scene has none */
+    tobi_csv *history, *bodies, *solids, *probes, *lines, *joints, *porous;   /* NULL: there are none */
     int64_t outputs;                      /* taken so far = number of the next       */
     pthread_mutex_t aside_lock;           /* of the next three, which the writer only reads */
     tobi_aside *aside;                    /* those at no multiple of the interval, in order */
@@ -199,10 +199,13 @@ tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err);
 /* record/joints.c: joints.csv, likewise. */
 tobi_status tobi_joints_open(tobi_run *run, bool continued, tobi_error *err);
 tobi_status tobi_joints_write(tobi_run *run, double before, tobi_error *err);
+/* record/porous.c: porous_zones.csv, likewise. */
+tobi_status tobi_porous_open(tobi_run *run, bool continued, tobi_error *err);
+tobi_status tobi_porous_write(tobi_run *run, double before, tobi_error *err);
 /* A table of the run: new, or continued after the rows up to `time`. */
 tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued, double time,
                             const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err);
-enum { TOBI_TABLES = 6 };
+enum { TOBI_TABLES = 7 };
 /* All tables, NULL where there is none. */
 void tobi_tables_list(const tobi_run *run, tobi_csv *tables[TOBI_TABLES]);
 /* Tries to write rows that wait; how many do. */
@@ -218,6 +221,7 @@ void tobi_works_free(tobi_run *run);
 void tobi_works_add(tobi_run *run, double dt);
 double tobi_works_bodies(const tobi_run *run, int by);
 double tobi_works_joints(const tobi_run *run);
+double tobi_works_porous(const tobi_run *run);
 /* For checkpoints; older ones have none: json NULL, works count from there on. */
 struct json_t *tobi_works_to_json(const tobi_run *run);
 bool tobi_works_from_json(const struct json_t *json, tobi_run *run);

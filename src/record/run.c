@@ -97,7 +97,8 @@ static void tell_losses(tobi_run *run)
     const struct { const tobi_csv *csv; const char *name; } tables[] = {
         { run->history, "history.csv" }, { run->bodies, "bodies.csv" },
         { run->solids, "solids.csv" }, { run->probes, "probes.csv" },
-        { run->lines, "lines.csv" }, { run->joints, "joints.csv" } };
+        { run->lines, "lines.csv" }, { run->joints, "joints.csv" },
+        { run->porous, "porous_zones.csv" } };
     char *at = run->losses, *end = at + sizeof run->losses;
     *at = '\0';
     if (run->lost_dir) at += snprintf(at, (size_t)(end - at), "the directory was deleted and made again; ");
@@ -244,6 +245,7 @@ static tobi_status step_towards(tobi_run *run, double target, double end, tobi_e
     tobi_works_add(run, sim->info.dt);
     TOBI_TRY(tobi_lines_write(run, start, err));
     TOBI_TRY(tobi_joints_write(run, start, err));
+    TOBI_TRY(tobi_porous_write(run, start, err));
     return tobi_tables_write_probes(run, start, err);
 }
 
@@ -348,6 +350,7 @@ void tobi_run_free(tobi_run *run)
     tobi_csv_close(run->probes);
     tobi_csv_close(run->lines);
     tobi_csv_close(run->joints);
+    tobi_csv_close(run->porous);
     if (run->lock >= 0) close(run->lock);
     tobi_series_free(run);
     tobi_snapshot_free_skins(run);

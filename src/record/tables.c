@@ -81,7 +81,7 @@ tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continue
 }
 
 #define H(name, unit, kind, value, doc) { name, NULL },
-static const tobi_csv_column history_columns[] = { HISTORY(H) };
+static const tobi_csv_column history_columns[] = { HISTORY(H) HISTORY_POROUS(H) };
 #undef H
 #define B(name, unit, value, doc) { name, NULL },
 static const tobi_csv_column body_columns[] = { { "time", NULL }, { "name", NULL }, BODY(B) BODY_2D(B) };
@@ -94,7 +94,7 @@ static const tobi_csv_column solid_columns[] = { { "time", NULL }, { "name", NUL
 #undef S
 
 #define H(name, unit, kind, value, doc) { name, unit, doc },
-static const tobi_column history[] = { HISTORY(H) };
+static const tobi_column history[] = { HISTORY(H) HISTORY_POROUS(H) };
 #undef H
 #define B(name, unit, value, doc) { name, unit, doc },
 static const tobi_column body[] = {
@@ -110,7 +110,7 @@ static const tobi_column point[] = { POINT(P) }, level[] = { LEVEL(P) }, patch[]
     run_up[] = { RUN_UP(P) }, flow[] = { FLOW(P) }, volume[] = { VOLUME(P) };
 #undef P
 #define V(name, unit, value, doc) { name, unit, doc },
-static const tobi_column line[] = { LINE(V) }, joint[] = { JOINT(V, V) };
+static const tobi_column line[] = { LINE(V) }, joint[] = { JOINT(V, V) }, porous[] = { POROUS(V) };
 #undef V
 
 static const struct { const tobi_column *columns; int count; } tables[] = {
@@ -119,6 +119,7 @@ static const struct { const tobi_column *columns; int count; } tables[] = {
     [TOBI_TABLE_POINT] = LIST(point), [TOBI_TABLE_LEVEL] = LIST(level), [TOBI_TABLE_PATCH] = LIST(patch),
     [TOBI_TABLE_RUN_UP] = LIST(run_up), [TOBI_TABLE_FLOW] = LIST(flow), [TOBI_TABLE_VOLUME] = LIST(volume),
     [TOBI_TABLE_SOLIDS] = LIST(solid), [TOBI_TABLE_LINES] = LIST(line), [TOBI_TABLE_JOINTS] = LIST(joint),
+    [TOBI_TABLE_POROUS] = LIST(porous),
 #undef LIST
 };
 
@@ -161,7 +162,8 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
     const double last = continued ? tobi_record_time(run, run->outputs - 1) : 0;
     const int flat = run->world->sim.def.dimension == 2;
     TOBI_TRY(tobi_table_open(run, "history.csv", continued, last, history_columns,
-                        tables[TOBI_TABLE_HISTORY].count, &run->history, err));
+                        tables[TOBI_TABLE_HISTORY].count - (run->world->sim.porous_count > 0 ? 0 : 1),
+                        &run->history, err));
     if (tobi_world_body_count(run->world) > 0)
         TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, last, body_columns,
                             tables[TOBI_TABLE_BODIES].count - (flat ? 0 : FLAT), &run->bodies, err));
@@ -170,6 +172,7 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
                             tables[TOBI_TABLE_SOLIDS].count, &run->solids, err));
     TOBI_TRY(tobi_lines_open(run, continued, err));
     TOBI_TRY(tobi_joints_open(run, continued, err));
+    TOBI_TRY(tobi_porous_open(run, continued, err));
     return tobi_probes_open(run, continued, err);
 }
 
@@ -223,6 +226,7 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
     TOBI_TRY(take_solids(run, &snapshot->solids, err));
 #define H(name, unit, kind, value, doc) tobi_csv_add_##kind(run->history, value);
     HISTORY(H)
+    if (run->world->sim.porous_count > 0) { HISTORY_POROUS(H) }
 #undef H
     return tobi_csv_take_row(run->history, &snapshot->history, err);
 }
@@ -243,7 +247,7 @@ tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error
 void tobi_tables_list(const tobi_run *run, tobi_csv *tables[TOBI_TABLES])
 {
     tobi_csv *const all[TOBI_TABLES] = { run->history, run->bodies, run->solids, run->probes,
-                                          run->lines, run->joints };
+                                          run->lines, run->joints, run->porous };
     for (int k = 0; k < TOBI_TABLES; k++) tables[k] = all[k];
 }
 

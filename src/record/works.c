@@ -22,9 +22,10 @@ bool tobi_works_open(tobi_run *run)
 {
     run->works.body = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->works.body);
     run->works.joint = calloc((size_t)tobi_world_joint_count(run->world) + 1, sizeof *run->works.joint);
+    run->works.porous = calloc(TOBI_POROUS_LIMIT, sizeof *run->works.porous);
     run->works.angle = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->works.angle);
     if (run->works.angle) follow_turns(run);
-    return run->works.body && run->works.joint && run->works.angle;
+    return run->works.body && run->works.joint && run->works.angle && run->works.porous;
 }
 
 void tobi_works_free(tobi_run *run)
@@ -32,6 +33,7 @@ void tobi_works_free(tobi_run *run)
     free(run->works.body);
     free(run->works.joint);
     free(run->works.angle);
+    free(run->works.porous);
 }
 
 void tobi_works_add(tobi_run *run, double dt)
@@ -42,6 +44,8 @@ void tobi_works_add(tobi_run *run, double dt)
         for (int by = 0; by < TOBI_POWERS; by++) w->body[k][by] += dt*run->world->sim.bodies[k].power[by];
     for (int k = 0; tobi_world_joint(run->world, k, &joint); k++) w->joint[k] += dt*joint.power;
     w->lines += dt*tobi_energy_line_power(run->world);
+    for (int k = 0; k < run->world->sim.porous_count; k++)
+        w->porous[k] += dt*run->world->sim.porous[k].power;
     follow_turns(run);
 }
 
@@ -59,9 +63,16 @@ double tobi_works_joints(const tobi_run *run)
     return sum;
 }
 
+double tobi_works_porous(const tobi_run *run)
+{
+    double sum = 0;
+    for (int k = 0; k < run->world->sim.porous_count; k++) sum += run->works.porous[k];
+    return sum;
+}
+
 json_t *tobi_works_to_json(const tobi_run *run)
 {
-    json_t *bodies = json_array(), *joints = json_array(), *angles = json_array();
+    json_t *bodies = json_array(), *joints = json_array(), *angles = json_array(), *porous = json_array();
     for (int k = 0; k < tobi_world_body_count(run->world); k++) {
         json_t *row = json_array();
         for (int by = 0; by < TOBI_POWERS; by++)
@@ -72,8 +83,10 @@ json_t *tobi_works_to_json(const tobi_run *run)
         json_array_append_new(angles, json_real(run->works.angle[k]));
     for (int k = 0; k < tobi_world_joint_count(run->world); k++)
         json_array_append_new(joints, json_real(run->works.joint[k]));
-    return json_pack("{s:o, s:o, s:o, s:f}", "bodies", bodies, "joints", joints, "angles", angles, "lines",
-                     run->works.lines);
+    for (int k = 0; k < run->world->sim.porous_count; k++)
+        json_array_append_new(porous, json_real(run->works.porous[k]));
+    return json_pack("{s:o, s:o, s:o, s:o, s:f}", "bodies", bodies, "joints", joints, "angles", angles,
+                     "porous_zones", porous, "lines", run->works.lines);
 }
 
 bool tobi_works_from_json(const json_t *json, tobi_run *run)
@@ -87,6 +100,8 @@ bool tobi_works_from_json(const json_t *json, tobi_run *run)
     if (json_array_size(of_bodies) != bodies || json_array_size(of_joints) != joints) return false;
     if (!json_is_number(lines)) return false;
     run->works.lines = json_number_value(lines);
+    for (size_t k = 0; k < (size_t)run->world->sim.porous_count; k++)      /* absent: 0 */
+        run->works.porous[k] = json_number_value(json_array_get(json_object_get(json, "porous_zones"), k));
     for (size_t k = 0; k < bodies; k++)
         for (size_t by = 0; by < TOBI_POWERS; by++)
             run->works.body[k][by] = json_number_value(json_array_get(json_array_get(of_bodies, k), by));

@@ -35,6 +35,8 @@ static const tobi_part parts[] = {
       "A force towards a place, if any." },
     { "world", "damping_zones", TOBI_PART_LIST, &tobi_damping_table, 0, 16,
       "Where liquids are damped, if anywhere: beaches." },
+    { "world", "porous_zones", TOBI_PART_LIST, &tobi_porous_table, 0, TOBI_POROUS_LIMIT,
+      "Where stones, stems or screens resist liquids, if anywhere." },
     { "world", "frame", TOBI_PART_MOTION, NULL, 0, 0,
       "How the tank moves that all is seen from: one motion, or a list of them, as of a body." },
     { "world", "output", TOBI_PART_OBJECT, &tobi_output_table, 0, 0, "The files of a run." },

@@ -1,5 +1,5 @@
 /* What a scene says about its tank as a whole: gravity in time, a central force, the frame that it is seen
-   from, damping zones. */
+   from, damping zones, porous zones. */
 #include "scene/tank.h"
 #include "scene/write.h"
 #include "base/param.h"
@@ -39,11 +39,28 @@ static void bind_zones(tobi_scene_tank *t, const tobi_binder *binder, json_t *li
     }
 }
 
+static void bind_porous(tobi_scene_tank *t, const tobi_binder *binder, json_t *list, const tobi_place *root)
+{
+    const tobi_place place = { root, "porous_zones", 0 };
+    if (!json_is_array(list) || json_array_size(list) > TOBI_POROUS_LIMIT) {
+        tobi_source_mistake(binder->source, &place, "must be a list [ { ... } ] of %d zones at most",
+                            TOBI_POROUS_LIMIT);
+        return;
+    }
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const tobi_place entry = { &place, NULL, i };
+        t->porous[i] = tobi_default_porous_def();
+        tobi_bind(binder, &tobi_porous_table, json_array_get(list, i), &entry, NULL, &t->porous[i]);
+        t->porous_count++;
+    }
+}
+
 void tobi_tank_bind(tobi_scene_tank *t, const tobi_binder *binder, json_t *scene, const tobi_place *root)
 {
     const tobi_place gravity = { root, "gravity_in_time", 0 }, centre = { root, "central_force", 0 };
     json_t *changes = json_object_get(scene, "gravity_in_time"), *frame = json_object_get(scene, "frame");
     json_t *zones = json_object_get(scene, "damping_zones");
+    json_t *porous = json_object_get(scene, "porous_zones");
     json_t *central = json_object_get(scene, "central_force");
     t->gravity = tobi_default_gravity_def();
     t->central = tobi_default_central_def();
@@ -51,6 +68,7 @@ void tobi_tank_bind(tobi_scene_tank *t, const tobi_binder *binder, json_t *scene
     if (central) tobi_bind(binder, &tobi_central_table, central, &centre, NULL, &t->central);
     if (frame) bind_frame(t, binder, frame, root);
     if (zones) bind_zones(t, binder, zones, root);
+    if (porous) bind_porous(t, binder, porous, root);
 }
 
 tobi_status tobi_tank_build(const tobi_scene_tank *t, tobi_world *world, tobi_error *err)
@@ -60,14 +78,24 @@ tobi_status tobi_tank_build(const tobi_scene_tank *t, tobi_world *world, tobi_er
     return t->frame ? tobi_world_set_frame(world, tobi_motion_positions, t->frame, err) : TOBI_OK;
 }
 
-int tobi_tank_write(const tobi_scene_tank *t, json_t *root)
+static int write_zones(const tobi_scene_tank *t, json_t *root)
 {
-    json_t *zones = json_array();
-    int failed = !zones;
+    json_t *zones = json_array(), *porous = json_array();
+    int failed = !zones || !porous;
     for (int k = 0; k < t->damping_count; k++)
         failed |= json_array_append_new(zones, tobi_write_def(&tobi_damping_table, &t->damping[k]));
+    for (int k = 0; k < t->porous_count; k++)
+        failed |= json_array_append_new(porous, tobi_write_def(&tobi_porous_table, &t->porous[k]));
     if (t->damping_count) failed |= json_object_set(root, "damping_zones", zones);
+    if (t->porous_count) failed |= json_object_set(root, "porous_zones", porous);
     json_decref(zones);
+    json_decref(porous);
+    return failed;
+}
+
+int tobi_tank_write(const tobi_scene_tank *t, json_t *root)
+{
+    int failed = write_zones(t, root);
     if (t->changes)
         failed |= json_object_set_new(root, "gravity_in_time",
                                       tobi_write_def(&tobi_gravity_table, &t->gravity));

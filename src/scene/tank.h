@@ -12,6 +12,8 @@ typedef struct tobi_scene_tank {
     tobi_motion_def frame_def[TOBI_MOTION_LIMIT];
     tobi_damping_def damping[TOBI_ZONES];
     int damping_count;
+    tobi_porous_def porous[TOBI_POROUS_LIMIT];
+    int porous_count;
     tobi_motion *frame;            /* owned; NULL = at rest                       */
 } tobi_scene_tank;
 

@@ -14,6 +14,7 @@
 #include "linear/solve.h"
 #include "sph/kernels.h"
 #include "sph/openings.h"
+#include "sph/porous.h"
 #include "sph/stages.h"
 #include "sph/reference.h"
 #include "sph/undo.h"
@@ -421,11 +422,6 @@ static void set_reference(tobi_system *s, dfsph *m)
                        fmax(m->memory.speed, s->sim->body_speed), &m->memory.level);
 }
 
-static void restore_velocities(tobi_system *s, const tobi_float4 *kept)
-{
-    memcpy(s->particles.velocity, kept, (size_t)s->particles.count*sizeof *kept);
-}
-
 /* Before the first step: still water and the share of gravity that walls carry, (18) and (6b), follow from
    the pressure of the step before. Without one the water would set off as if neither were there, and the
    second step would press it back: a sensor read 1.8 times the pressure of rest. So the first step's pressure
@@ -446,7 +442,7 @@ static tobi_status find_first_pressure(tobi_system *s, dfsph *m, double *clock, 
         tobi_couple_begin(s);
         sph_soft_begin(s, 1);
         remove_divergence(s, m, clock);
-        restore_velocities(s, kept);
+        memcpy(s->particles.velocity, kept, (size_t)s->particles.count*sizeof *kept);
         set_reference(s, m);
         bind_view(s, m);
     }
@@ -488,6 +484,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);
     m->memory.low = sph_reference_low(s);
     m->memory.open = sph_reference_open(s);
+    sph_porous_begin(s);
     return TOBI_OK;
 }
 
@@ -495,6 +492,7 @@ static void forces(tobi_system *s)
 {
     double clock = tobi_clock();
     apply_forces(s, s->state, &clock);
+    sph_porous_brake(s, NULL);
 }
 
 static tobi_status solve(tobi_system *s, tobi_error *err)
@@ -504,7 +502,10 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     tobi_couple_begin(s);
     sph_soft_begin(s, 1);
+    m->view.porous = sph_fields_of(&s->particles)->porous;
     remove_divergence(s, m, &clock);
+    m->view.porous = NULL;
+    sph_porous_measure(s);
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     correct_density(s, m, &clock);
     return tobi_simulation_check_stop(s->sim, err);

@@ -3,9 +3,11 @@
 #include "core/particles.h"
 
 /* Scenes with surface tension; liquids with bodies in them; inlets and outlets; several liquids;
-   implicit viscosity; the filter (13b) with a free surface; liquids whose viscosity depends on the flow. */
+   implicit viscosity; the filter (13b) with a free surface; liquids whose viscosity depends on the flow;
+   porous zones. */
 enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2, SPH_NEED_OPENINGS = 4, SPH_NEED_PHASES = 8,
-       SPH_NEED_IMPLICIT = 16, SPH_NEED_FILTER = 32, SPH_NEED_APPARENT = 64 };
+       SPH_NEED_IMPLICIT = 16, SPH_NEED_FILTER = 32, SPH_NEED_APPARENT = 64,
+       SPH_NEED_POROUS = 128 };
 
 /* Stages of a step: boundaries; density; forces; the pressure by an equation, or by that of state; the
    correction of positions; forces on walls and bodies, new positions. Between steps: a derived output. */
@@ -81,6 +83,10 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
     X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "at a free surface 1; sparse: 2") \
     X(tobi_float4, TOBI_F32, 4, held,         TOBI_SCRATCH, SPH_NEED_OPENINGS, "m/s", \
       "velocity in a buffer; w: 1 + number of an inlet, < 0 of an outlet, 0: none") \
+    X(tobi_float4, TOBI_F32, 4, porous,       TOBI_SCRATCH, SPH_NEED_POROUS, "1", \
+      "drag of its zone in the step, sph/porous.k.h") \
+    X(tobi_float4, TOBI_F32, 4, porous_before, TOBI_SCRATCH, SPH_NEED_POROUS, "m/s", \
+      "velocity before the step; w: 1 + number of its zone, 0: none") \
     X(int32_t,     TOBI_I32, 1, last_link,    TOBI_SCRATCH, 0, "1",    "last near-body entry, -1 = none")
 
 typedef struct sph_fields { SPH_FIELDS(TOBI_FIELD_POINTER) } sph_fields;

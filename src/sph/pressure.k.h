@@ -8,6 +8,7 @@
 #include "core/smoothing.k.h"
 #include "exec/pairs.h"
 #include "linear/value.k.h"
+#include "sph/porous.k.h"
 #include "sph/tensor.k.h"
 #include "sph/view.h"
 
@@ -45,7 +46,7 @@ TOBI_FN tobi_float4 sph_pressure_accel_value(const sph_view *v, int64_t i, sph_p
     out.y = k*(v->slope*sum.y - p2*w.y);
     out.z = k*(v->slope*sum.z - p2*w.z);
     out.w = 0;
-    return out;
+    return v->porous ? sph_porous_give(v->porous[i], out) : out;
 }
 
 TOBI_FN void sph_pressure_accel_finish(const sph_view *v, int64_t i, sph_pressure_accel_acc *a,
@@ -146,6 +147,13 @@ TOBI_FN void sph_target_divergence_finish(const sph_view *v, int64_t i, sph_targ
     v->target_divergence[i] = 0.5f*v->dt*(squares + 2*mixed);
 }
 
+/* Inverse of the diagonal, which porous zones make smaller. */
+TOBI_FN float sph_inverse_diagonal(const sph_view *v, int64_t i)
+{
+    const float share = v->porous ? sph_porous_mean(v->porous[i], v->dimension) : 1;
+    return 1/(share*v->diagonal[i]);
+}
+
 /* Source of the velocity equation, eq. (10): s = C v/dt for the velocity without pressure. At a free
    surface pressure only pushes: a particle that neither is compressed nor holds pressure is left out
    (precondition 0), and so is one that hardly touches another. Elsewhere s has either sign. In the same
@@ -154,7 +162,7 @@ TOBI_FN void sph_target_divergence_finish(const sph_view *v, int64_t i, sph_targ
    totals[0]: |s|^2/diagonal, the scale of residuals. */
 TOBI_FN void sph_start_search(const sph_view *v, int64_t i, float r, int active, double *totals)
 {
-    v->precondition[i] = active ? 1/v->diagonal[i] : 0;
+    v->precondition[i] = active ? sph_inverse_diagonal(v, i) : 0;
     v->residual[i] = active ? r : 0;
     v->delta[i] = 0;
     float size = fabsf(v->residual[i]);
@@ -186,7 +194,7 @@ TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_source_acc *a, 
     float r = v->inverse_dt*rate;
     int active = v->diagonal[i] > v->isolated && !sph_held(v, i) &&
                  (!v->surface[i] || r > 0 || v->pressure[i] > sph_floor(v, i));
-    v->precondition[i] = active ? 1/v->diagonal[i] : 0;
+    v->precondition[i] = active ? sph_inverse_diagonal(v, i) : 0;
     v->residual[i] = active ? r : 0;
     v->product[i] = sph_compliance(v, i, v->pressure[i]) - sph_compression_value(v, i, &a->held, v->accel, 0);
     totals[0] += (double)v->residual[i]*(v->residual[i]*v->precondition[i]);

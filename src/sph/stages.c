@@ -92,6 +92,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     v->blind = v->exact;
     bind_stage(v, f);
     v->held = sph_of(s)->marked ? f->held : NULL;
+    v->porous = NULL;
     v->outlet_normal = sph_of(s)->normal;
     v->last_link = s->sim->body_count > 0 ? f->last_link : NULL;
     v->fluid = p->fluid; v->list_start = s->cells.list_start; v->list_groups = s->cells.list_groups;

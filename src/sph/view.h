@@ -49,6 +49,7 @@ typedef struct sph_view {
     uint8_t *TOBI_RESTRICT surface;           /* 1 at a free surface, SPH_SPARSE, or 0 */
     const uint8_t *TOBI_RESTRICT fluid;
     const tobi_float4 *TOBI_RESTRICT held;    /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none */
+    const tobi_float4 *TOBI_RESTRICT porous;  /* drag, porous.k.h; NULL: none acts in the pass at hand */
     const tobi_float4 *outlet_normal;         /* of each opening, by |w| - 1; w = 1: sph_carried */
     /* neighbour list */
     const void *TOBI_RESTRICT list;

@@ -9,6 +9,7 @@
 #include "sph/boundary/boundary.h"
 #include "sph/kernels.h"
 #include "sph/openings.h"
+#include "sph/porous.h"
 #include "sph/stages.h"
 #include "sph/reference.h"
 #include "sph/viscosity.h"
@@ -216,6 +217,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
     m->memory.low = find_surface(s);
     m->memory.open = sph_reference_open(s);
+    sph_porous_begin(s);
     return TOBI_OK;
 }
 
@@ -232,6 +234,8 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     tobi_couple_begin(s);
     sph_soft_begin(s, 0);
     apply_pressure(s, s->state, &clock);
+    sph_porous_brake(s, NULL);
+    sph_porous_measure(s);
     return TOBI_OK;
 }
 

@@ -49,6 +49,14 @@ tobi_status tobi_names_check_joint(const tobi_world *w, const char *name, tobi_e
     return TOBI_OK;
 }
 
+tobi_status tobi_names_check_porous(const tobi_world *w, const char *name, tobi_error *err)
+{
+    for (int k = 0; k < w->sim.porous_count; k++)
+        if (strcmp(w->sim.porous[k].name, name) == 0)
+            return refuse("porous zone", "porous zone", k, name, err);
+    return TOBI_OK;
+}
+
 tobi_status tobi_names_check_opening(const tobi_world *w, int outlet, const char *name, tobi_error *err)
 {
     const char *kind = outlet ? "outlet" : "inlet";

@@ -8,4 +8,5 @@ tobi_status tobi_names_check_matter(const tobi_world *w, const char *kind, const
 tobi_status tobi_names_check_probe(const tobi_world *w, const char *name, tobi_error *err);
 tobi_status tobi_names_check_line(const tobi_world *w, const char *name, tobi_error *err);
 tobi_status tobi_names_check_joint(const tobi_world *w, const char *name, tobi_error *err);
+tobi_status tobi_names_check_porous(const tobi_world *w, const char *name, tobi_error *err);
 tobi_status tobi_names_check_opening(const tobi_world *w, int outlet, const char *name, tobi_error *err);

@@ -1,4 +1,4 @@
-/* Parameters of what a tank has: gravity in time, a central force, damping zones. */
+/* Parameters of what a tank has: gravity in time, a central force, damping and porous zones. */
 #include "base/param_rows.h"
 #include "base/param.h"
 
@@ -55,3 +55,40 @@ static const tobi_param damping_rows[] = {
 const tobi_param_table tobi_damping_table = {
     "damping_zone", "A box in which the velocities of liquids decay: a beach.", sizeof(tobi_damping_def),
     damping_rows };
+
+static const tobi_param porous_rows[] = {
+    { .key = "name", TEXT, AT(tobi_porous_def, name), .unit = "name", .text = "zone", .required = true,
+      .doc = "Name of the zone, used once in a scene and in the columns of porous_zones.csv." },
+    { .key = "box.min", VEC3, AT(tobi_porous_def, box_min), PLACE, .unit = "m", .required = true,
+      .doc = "Lower corner of the zone." },
+    { .key = "box.max", VEC3, AT(tobi_porous_def, box_max), PLACE, .unit = "m", .required = true,
+      .doc = "Upper corner of the zone." },
+    { .key = "stones.size", REAL, AT(tobi_porous_def, stone_size), RANGE(1e-6, 1e3), .unit = "m",
+      .text = "none", .doc = "Median diameter D of stones, by which they resist after van Gent (1995)." },
+    { .key = "stones.porosity", REAL, AT(tobi_porous_def, porosity), RANGE(0.01, 0.99), .unit = "1",
+      .text = "none", .doc = "Share n of the zone that is no stone; a rubble mound has some 0.4." },
+    { .key = "stones.linear_coefficient", REAL, AT(tobi_porous_def, linear_coefficient), .def = { 1000 },
+      RANGE(0, 1e6), .unit = "1", .doc = "alpha of a = alpha (1 - n)^2/n^3 nu/D^2." },
+    { .key = "stones.quadratic_coefficient", REAL, AT(tobi_porous_def, quadratic_coefficient),
+      .def = { 1.1 }, RANGE(0, 1e3), .unit = "1", .doc = "beta of b = beta (1 - n)/(n^3 D)." },
+    { .key = "stems.number", REAL, AT(tobi_porous_def, stem_number), RANGE(1e-6, 1e9), .unit = "1/m2",
+      .text = "none", .doc = "Stems per area across them. They resist what flows across them." },
+    { .key = "stems.diameter", REAL, AT(tobi_porous_def, stem_diameter), RANGE(1e-6, 1e3), .unit = "m",
+      .text = "none", .doc = "Their diameter, or their width across the flow." },
+    { .key = "stems.drag", REAL, AT(tobi_porous_def, stem_drag), .def = { 1 }, RANGE(0, 100), .unit = "1",
+      .doc = "Their drag coefficient C: b = C number diameter/2." },
+    { .key = "screen.loss", REAL, AT(tobi_porous_def, screen_loss), RANGE(1e-6, 1e6), .unit = "1",
+      .text = "none", .doc = "A net or a perforated wall: K of the pressure loss K rho u^2/2 across it." },
+    { .key = "resistance.linear", REAL, AT(tobi_porous_def, linear), RANGE(0, 1e6), .unit = "1/s",
+      .doc = "a of rho (a u + b |u| u), the pressure that is lost per metre, given directly." },
+    { .key = "resistance.quadratic", REAL, AT(tobi_porous_def, quadratic), RANGE(0, 1e6), .unit = "1/m",
+      .doc = "b of that formula." },
+    { .key = "direction", VEC3, AT(tobi_porous_def, direction), DIRECTION, .unit = "1",
+      .doc = "Along stems, or across a screen. 0: stems stand upwards, a screen lies across the thinnest "
+             "side of its box." },
+    { 0 }
+};
+
+const tobi_param_table tobi_porous_table = {
+    "porous_zone", "A box whose contents resist liquids: one of stones, stems, screen and resistance.",
+    sizeof(tobi_porous_def), porous_rows };

@@ -48,10 +48,11 @@ static int is_full_vessel(const tobi_world *w, const tobi_system *s)
     return filled > domain*(1 - 0.5*d->spacing/longest);
 }
 
-/* Whether a body or a side moves in a full vessel. */
+/* Whether a body or a side moves in a full vessel, or liquid is driven through a porous zone: behind it the
+   pressure is low, where particles would cluster. */
 static int is_stirred_vessel(const tobi_world *w, const tobi_system *s)
 {
-    int driven = w->sim.wall_speed > 0 || tobi_system_is_mixed(s) ||
+    int driven = w->sim.wall_speed > 0 || tobi_system_is_mixed(s) || w->sim.porous_count > 0 ||
                  tobi_body_any_free(w->sim.bodies, w->sim.body_count);
     for (int k = 0; k < w->sim.body_count; k++) driven |= w->sim.bodies[k].motion != NULL;
     return driven && is_full_vessel(w, s);

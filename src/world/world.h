@@ -86,6 +86,8 @@ tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tob
 /* Adds a note for each wave maker in a liquid whose method damps waves or whose depth is another, and for
    each other body that a motion without a script takes through a side. */
 tobi_status tobi_world_note_makers(tobi_world *w, tobi_error *err);
+/* Adds a note for each porous zone that is thin, has stones, or no liquid in it. porous.c */
+tobi_status tobi_world_note_porous(tobi_world *w, tobi_error *err);
 /* Adds a note for each probe of a point that begins deep in a body. */
 tobi_status tobi_world_note_probes(tobi_world *w, tobi_error *err);
 

@@ -377,7 +377,7 @@ static void no_object_and_no_text(void **state)
     tobi_motion_free(motion);
     tobi_run_go_on(NULL, 1);
     assert_true(tobi_run_pictures(NULL, &seconds) == 0 && seconds == 0);
-    assert_true(!tobi_run_column((tobi_table)-1, 0) && !tobi_run_column(TOBI_TABLE_JOINTS + 1, 0));
+    assert_true(!tobi_run_column((tobi_table)-1, 0) && !tobi_run_column(TOBI_TABLE_POROUS + 1, 0));
     assert_true(!tobi_scene_suggest(NULL) && !tobi_suggest(NULL, NULL, 1) && !tobi_suggest("a", NULL, 1));
     assert_int_equal(tobi_solid_uses(0, NULL), 1);
     tobi_solid_list(0, NULL, 10);
@@ -409,10 +409,11 @@ static void names_that_are_none(void **state)
     tobi_joint_def joint = tobi_default_joint_def();
     tobi_inlet_def inlet = tobi_default_inlet_def();
     tobi_outlet_def outlet = tobi_default_outlet_def();
+    tobi_porous_def zone = tobi_default_porous_def();
     memset(name, 'a', 64);
     name[64] = '\0';
     fluid.name = solid.name = body.name = probe.name = line.name = joint.name = name;
-    inlet.name = outlet.name = name;
+    inlet.name = outlet.name = zone.name = name;
     const char *const long_name = ".name has 64 bytes, allowed are up to 63";
     REFUSED(tobi_world_add_fluid(w, &fluid, NULL, 0, &err), TOBI_INVALID, long_name);
     REFUSED(tobi_world_add_solid(w, &solid, NULL, 0, &err), TOBI_INVALID, long_name);
@@ -422,6 +423,7 @@ static void names_that_are_none(void **state)
     REFUSED(tobi_world_add_joint(w, &joint, &err), TOBI_INVALID, long_name);
     REFUSED(tobi_world_add_inlet(w, &inlet, &err), TOBI_INVALID, long_name);
     REFUSED(tobi_world_add_outlet(w, &outlet, &err), TOBI_INVALID, long_name);
+    REFUSED(tobi_world_add_porous(w, &zone, &err), TOBI_INVALID, long_name);
     static const char *const odd[] = { "a,b", "a\nb", "a\"b", "a\177b" };       /* no cells of a table */
     for (size_t k = 0; k < sizeof odd/sizeof *odd; k++) {
         fluid.name = body.name = probe.name = odd[k];

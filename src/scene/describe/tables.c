@@ -32,6 +32,8 @@ static const char head[] =
     "`wave_groups.csv` | by [`tobiuo waves`](waves.md) |\n"
     "| response of a float or a mooring to waves (RAO) | `wave_responses.csv`, `wave_gains.csv` | by "
     "[`tobiuo waves --response`](waves.md#responses-of-floats-and-moorings) |\n"
+    "| force on a porous zone, what it takes | `porous_zones.csv`; all: `history.csv` | `NAME_force_x`, "
+    "`NAME_work`; `porous_work` |\n"
     "| tension of a line, force in a joint | `lines.csv`, `joints.csv` | `NAME_tension`; "
     "`NAME_force_x`, `_y`, `_z` |\n"
     "| force of the liquids on the sides of the domain | `history.csv` | `wall_force_x`, `_y`, `_z` |\n"
@@ -71,10 +73,10 @@ static const char head[] =
     "  `clamped_to` it. Torques are about its centre of mass.\n"
     "- Columns `elastic_energy` to `side_work` are of the method `mlsmpm`. Without it they are 0.\n"
     "- `kinetic_energy` + `potential_energy` + `body_kinetic_energy` + `body_potential_energy` +\n"
-    "  `spring_energy` - `motion_work` + `joint_work` + `line_work` - `force_work` falls by what a liquid\n"
-    "  loses and by contact. Inlets add to it.\n"
-    "- `motion_work`, `joint_work`, `line_work`, `force_work`, `work` and `contact_work` know every\n"
-    "  step. They count on over a resume.\n"
+    "  `spring_energy` - `motion_work` + `joint_work` + `line_work` + `porous_work` - `force_work`\n"
+    "  falls by what a liquid loses else and by contact. Inlets add to it.\n"
+    "- `motion_work`, `joint_work`, `line_work`, `porous_work`, `force_work`, `work` and `contact_work`\n"
+    "  know every step. They count on over a resume.\n"
     "\n"
     "## Files of a run\n"
     "\n"
@@ -86,6 +88,7 @@ static const char head[] =
     "| `probes.csv` | sensors, a row per step or `output.probe_interval` | with probes |\n"
     "| `lines.csv`, `joints.csv` | lines; joints, hinges and guides; as many rows as `probes.csv` | with "
     "lines; with joints, hinges or guides |\n"
+    "| `porous_zones.csv` | [porous zones](porous.md); as many rows as `probes.csv` | with porous zones |\n"
     "| `fluid.pvd` | particles of the fluids and solids over time; `.vtu` in `fluid/` | with "
     "fluids or solids |\n"
     "| `bodies.pvd` | particles of the bodies over time; `.vtu` in `bodies/` | with bodies |\n"
@@ -139,6 +142,11 @@ static const char joined[] =
     "[line](lines.md) or [joint](joints.md), or that of the body with the hinge or guide.\n\n"
     "| column | unit | meaning |\n|---|---|---|\n";
 
+static const char *const zones =
+    "\n## porous_zones.csv\n\n"
+    "The first column is `time [s]`. The others begin with the name of the [zone](porous.md).\n\n"
+    "| column | unit | meaning |\n|---|---|---|\n";
+
 static const struct { const char *topic, *file, *doc; tobi_table table; } tables[] = {
     { "history", "history.csv", "The columns of history.csv: a row per output.", TOBI_TABLE_HISTORY },
     { "bodies", "bodies.csv", "The columns of bodies.csv: a row per output and body.", TOBI_TABLE_BODIES },
@@ -158,6 +166,8 @@ static const struct { const char *topic, *file, *doc; tobi_table table; } tables
     { "lines", "lines.csv", "The columns of lines.csv for each line: NAME_tension, ...", TOBI_TABLE_LINES },
     { "joints", "joints.csv", "The columns of joints.csv for each joint: NAME_force_x, ...",
       TOBI_TABLE_JOINTS },
+    { "zones", "porous_zones.csv", "The columns of porous_zones.csv for each zone: NAME_force_x, ...",
+      TOBI_TABLE_POROUS },
 };
 enum { TABLES = sizeof tables/sizeof *tables };
 
@@ -203,11 +213,12 @@ int tobi_tables_find(FILE *out, const char *name)
 
 const char *tobi_tables_topic(int index, const char **doc)
 {
-    static const char *const names[] = { "history", "bodies", "solids", "probes", "lines", "joints",
+    static const char *const names[] = { "history", "bodies", "solids", "probes", "lines", "joints", "zones",
                                          "tables" };
     static const char *const docs[] = { "The columns of history.csv, with units.", "Those of bodies.csv.",
                                         "Those of solids.csv.", "Those of probes.csv.",
                                         "Those of lines.csv.", "Those of joints.csv.",
+                                        "Those of porous_zones.csv.",
                                         "The page of all columns, in Markdown (docs/tables.md)." };
     if (index < 0 || index >= (int)(sizeof names/sizeof *names)) return NULL;
     *doc = docs[index];
@@ -253,6 +264,8 @@ char *tobi_tables_manual(void)
     fputs(joined, out);
     write_rows(out, TOBI_TABLE_LINES, NULL, "LINE_");
     write_rows(out, TOBI_TABLE_JOINTS, NULL, "JOINT_");
+    fputs(zones, out);
+    write_rows(out, TOBI_TABLE_POROUS, NULL, "ZONE_");
     int failed = ferror(out);
     if (fclose(out) == 0 && !failed) return text;
     free(text);

@@ -11,6 +11,7 @@
 #include "sph/kernels.h"
 #include "sph/openings.h"
 #include "sph/phases.h"
+#include "sph/porous.h"
 #include "sph/reference.h"
 #include "sph/sensor/probe.h"
 #include "sph/viscosity.h"
@@ -254,6 +255,7 @@ tobi_status isph_begin(tobi_system *s, tobi_error *err)
     find_still(s, m);
     sph_soft_balance(s, v->concentration_gradient, v->gate);
     s->info.volume_drift = t[1] > 0 ? -t[0]/t[1] : 0;
+    sph_porous_begin(s);
     tobi_stage_end(&s->sim->stages, "geometry", &clock);
     return TOBI_OK;
 }
@@ -304,6 +306,7 @@ void isph_forces(tobi_system *s)
     if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     isph_bodies_remove_hydrostatic(s);
     sph_viscosity_solve(s, &without, m->kernel, expect, &clock);
+    sph_porous_brake(s, m->solver.view.gate);
     launch(s, m, m->kernel->isph_gravity, NULL);
     sph_openings_hold(s);
 }
@@ -329,6 +332,7 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     double t[TOBI_TOTALS], clock = tobi_clock();
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     m->solver.pockets = m->memory.vessel == SPH_VESSEL_POCKETS;
+    m->solver.view.porous = sph_fields_of(&s->particles)->porous;
     tobi_linear_report report;
     int again = MOST_AGAIN, iterations = 0;
     do {
@@ -348,6 +352,8 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     sph_soft_correct(s, m->solver.view.solution);
     sph_openings_continue(s, 1);
     launch(s, m, m->kernel->isph_projection, t);
+    m->solver.view.porous = NULL;
+    sph_porous_measure(s);
     sph_openings_drive(s);
     s->info.force_sum = t[0]*s->smoothing.volume;
     tobi_stage_end(&s->sim->stages, "pressure force", &clock);

@@ -3,6 +3,7 @@
 #pragma once
 #include "sph/isph/images.k.h"
 #include "sph/isph/phases.k.h"
+#include "sph/isph/porous.k.h"
 #include "sph/isph/soft.k.h"
 
 /* Of the relative loss of neighbours, 1 - tr M/dim: where the gate begins to open, and is open. */
@@ -307,6 +308,15 @@ TOBI_FN void isph_rows_soft(const isph_view *v, int64_t i, isph_rows_acc *a)
     a->divergence = isph_first(divergence);
 }
 
+/* Pa/m, away from a free surface. Points of soft solids have a pressure difference of their own. */
+TOBI_FN void isph_rest(const isph_view *v, int64_t i, lane rest[3])
+{
+    const float rho = isph_soft_last(v, i) >= 0 ? 0 : (float)((1 - v->gate[i])*v->density);
+    float g[3];
+    isph_gravity_at(v, i, g);
+    for (int c = 0; c < 3; c++) rest[c] = lane_set(rho*g[c]);
+}
+
 TOBI_FN void isph_rows_start(const isph_view *v, int64_t i, isph_rows_acc *a)
 {
     const tobi_float4 u = v->velocity[i];
@@ -316,11 +326,10 @@ TOBI_FN void isph_rows_start(const isph_view *v, int64_t i, isph_rows_acc *a)
     a->bxy = lane_set(b.xy); a->byz = lane_set(b.yz); a->bzx = lane_set(b.zx);
     a->scale = lane_set(v->own_scale ? 2*v->scale[i] : v->scale[i]);
     a->sum = a->self = a->difference = a->divergence = lane_set(0);
-    const int soft = isph_soft_last(v, i) >= 0;      /* its points have a pressure difference of their own */
-    const float rest = soft ? 0 : (float)((1 - v->gate[i])*v->density);
-    float g[3];
-    isph_gravity_at(v, i, g);
-    a->px = lane_set(rest*g[0]); a->py = lane_set(rest*g[1]); a->pz = lane_set(rest*g[2]);
+    const int soft = isph_soft_last(v, i) >= 0;
+    lane rest[3];
+    isph_rest(v, i, rest);
+    a->px = rest[0]; a->py = rest[1]; a->pz = rest[2];
     a->bodies = 0;
     if (soft) isph_rows_soft(v, i, a);
     a->whole = a->sum;
@@ -355,6 +364,10 @@ TOBI_FN void isph_rows_pair(const isph_view *v, int64_t i, const tobi_neighbors 
         image = image*phase.image + phase.jump;
         rest = rest*phase.face;
     }
+    if (v->porous) {
+        if (!v->phase) c->whole += a;
+        a = a*isph_see_porous(v, i, n).share;
+    }
     c->difference += a*(image + rest);
     c->sum += a;
     if (kind == ISPH_SIDE && m->k < 0) c->self += a;
@@ -384,10 +397,10 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     }
     const tobi_float4 t = lane_sum4(a->sum, a->self, a->difference, a->divergence);
     const double loss = 1 - v->trace[i]/v->dimension;
-    const double whole = v->phase ? lane_sum(a->whole) : t.x;
+    const double whole = v->phase || v->porous ? lane_sum(a->whole) : t.x, open = isph_porous_mean(v, i);
     const double others = t.x - t.y - a->bodies;     /* rounding, of a drop that solids close in */
-    const double excess = others > 1e-6*v->full
-                        ? isph_excess(v, loss, whole, v->gate[i])/isph_density_of(v, i) : v->full;
+    const double excess = others > 1e-6*open*v->full
+                        ? open*isph_excess(v, loss, whole, v->gate[i])/isph_density_of(v, i) : v->full;
     const double diagonal = others + excess;
     v->source[i] = isph_volume_source(v, i, -v->slope*t.w) + t.z + v->density/v->dt*v->slope*t.w;
     if (v->keeps_volume) v->source[i] += 0.5*v->density*v->invariant[i];
@@ -456,12 +469,16 @@ TOBI_FN void isph_store_pressure(const isph_view *v, int64_t i, double *totals)
 /* v -= dt/rho grad p, eq. (9): the difference form, with M^-1, in the bulk; the plain sum, with -p_i in place
    of missing neighbours, at a free surface: corrected there, it would throw particles out. Along a flat
    surface the difference form stays: else the top row slides (decision 103). totals: |grad p|. */
-typedef struct isph_projection_acc { lane p, x, y, z; } isph_projection_acc;
+typedef struct isph_projection_acc {
+    lane p, x, y, z;
+    lane rest[3];                    /* Pa/m: rho g, as in a row; with porous zones */
+} isph_projection_acc;
 
 TOBI_FN void isph_projection_start(const isph_view *v, int64_t i, isph_projection_acc *a)
 {
     a->p = lane_set(v->pressure[i]);
-    a->x = a->y = a->z = lane_set(0);
+    a->x = a->y = a->z = a->rest[0] = a->rest[1] = a->rest[2] = lane_set(0);
+    if (v->porous) isph_rest(v, i, a->rest);
     if (isph_soft_last(v, i) < 0) return;
     double n[3], s[3] = {0, 0, 0};
     isph_soft_normal(v, i, n);
@@ -481,6 +498,10 @@ TOBI_FN void isph_projection_pair(const isph_view *v, int64_t i, const tobi_neig
         q = f*(n->w + image*phase.image + phase.jump - a->p)/phase.face;
     }
     a->x += q*n->dx; a->y += q*n->dy; a->z += q*n->dz;
+    if (!v->porous) return;
+    const isph_pair_porous porous = isph_see_porous(v, i, n);
+    const lane less = porous.inverse*(q + f*(a->rest[0]*n->dx + a->rest[1]*n->dy + a->rest[2]*n->dz));
+    a->x -= less*porous.part[0]; a->y -= less*porous.part[1]; a->z -= less*porous.part[2];
 }
 
 /* How surely the surface at i is flat: 0 to 1. */
@@ -504,7 +525,8 @@ TOBI_FN void isph_keep_along(double x[3], tobi_float4 n, double share)
 TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projection_acc *a, double *totals)
 {
     const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0));
-    const double own = v->pressure[i]/isph_density_of(v, i), mean = 2*v->gate[i]*v->surface_force*own,
+    const double own = isph_porous_mean(v, i)*v->pressure[i]/isph_density_of(v, i),
+                 mean = 2*v->gate[i]*v->surface_force*own,
                  k = -v->slope;
     double x[3] = {k*s.x, k*s.y, k*s.z};
     double g[3], lack[3];

@@ -5,6 +5,7 @@
 #include "sph/fields.h"
 #include "sph/isph/forces.h"
 #include "sph/isph/pockets.h"
+#include "sph/porous.k.h"
 #include "sph/isph/surface.h"
 #include "sph/isph/sweeps.h"
 #include "sph/soft.h"
@@ -195,16 +196,20 @@ static void precondition_by_diagonal(void *user, double *z, const double *r)
 
 typedef struct lightness { const isph_view *v; double least, *share; } lightness;
 
-/* Least density over that of each particle. */
+/* Least density over that of each particle, less what porous zones resist. */
 static void share_range(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const lightness *l = view;
+    const isph_view *v = l->v;
     (void)totals;
-    for (int64_t i = begin; i < end; i++) l->share[i] = l->least/l->v->phase[i].x;
+    for (int64_t i = begin; i < end; i++) {
+        l->share[i] = v->phase ? l->least/v->phase[i].x : 1;
+        if (v->porous) l->share[i] *= sph_porous_mean(v->porous[i], v->dimension);
+    }
 }
 
-/* Of several liquids, 1/rho over that of the first, which varies from point to point: at most that of the
-   lightest. The shares lie in scratch, which is free until a cycle. */
+/* 1/rho over that of the first liquid, which varies from point to point: at most that of the lightest. The
+   shares lie in scratch, which is free until a cycle. */
 static double set_shares(isph_solver *m, const tobi_system *s)
 {
     lightness l = { &m->view, INFINITY, m->scratch };
@@ -217,7 +222,7 @@ static void set_grid(isph_solver *m, tobi_system *s)
 {
     const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
     tobi_grid_weights w = { .strength = 1, .volume = m->view.volume, .excess = m->view.excess };
-    if (m->view.phase) {
+    if (m->view.phase || m->view.porous) {
         w.strength = set_shares(m, s);
         w.share = m->scratch;
     }

@@ -101,6 +101,7 @@ typedef struct isph_view {
     int fluid_count;
     const tobi_float4 *phase, *interface;
     const float (*interface_tension)[TOBI_MAX_FLUIDS];     /* N/m                                       */
+    const tobi_float4 *porous;       /* drag of porous zones, sph/porous.k.h; NULL: none acts            */
     const tobi_float4 *held;         /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none   */
     /* particle arrays */
     tobi_double3 *position;

@@ -1,0 +1,146 @@
+/* The drag of porous zones: implicit, with the quadratic part linearised about the velocity before the step
+   (decision 148). Drawback: zones are looked for by all particles, one after the other. */
+#include "sph/porous.h"
+#include "sph/porous.k.h"
+#include "sph/state.h"
+#include <math.h>
+
+static const tobi_porous *find_zone(const tobi_system *s, const double *x, int *number)
+{
+    for (int k = 0; k < s->sim->porous_count; k++) {
+        const tobi_porous *z = &s->sim->porous[k];
+        int inside = 1;
+        for (int a = 0; a < s->box.dimension; a++) inside &= x[a] >= z->lower[a] && x[a] < z->upper[a];
+        if (!inside) continue;
+        *number = k;
+        return z;
+    }
+    return NULL;
+}
+
+/* P u, into out; returns its size. */
+static double take_part(const tobi_porous *z, const double u[3], double out[3])
+{
+    double along = 0, size = 0;
+    for (int a = 0; a < 3; a++) along += z->direction[a]*u[a];
+    for (int a = 0; a < 3; a++) {
+        const double part = along*z->direction[a];
+        out[a] = z->kind == TOBI_POROUS_ALL ? u[a] : z->kind == TOBI_POROUS_ALONG ? part : u[a] - part;
+        size = hypot(size, out[a]);
+    }
+    return size;
+}
+
+static double find_linear(const tobi_system *s, const tobi_porous *z, int64_t i)
+{
+    const tobi_fluid *f = &s->fluid[s->particles.fluid[i]];
+    return z->linear + z->per_viscosity*f->viscosity/f->density;
+}
+
+static tobi_float4 encode(const tobi_porous *z, double c)
+{
+    const double root = z->kind == TOBI_POROUS_ALL ? 0 : sqrt(c);
+    return (tobi_float4){ (float)(root*z->direction[0]), (float)(root*z->direction[1]),
+                          (float)(root*z->direction[2]), z->kind == TOBI_POROUS_ALONG ? 0 : (float)c };
+}
+
+static void begin_range(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    const tobi_float4 none = { 0, 0, 0, 0 };
+    (void)totals;
+    for (int64_t i = begin; i < end; i++) {
+        const tobi_float4 v = s->particles.velocity[i];
+        const double u[3] = { v.x, v.y, v.z };
+        double part[3];
+        int k = 0;
+        const int held = sph_of(s)->marked && f->held && f->held[i].w != 0;
+        const tobi_porous *z = held ? NULL : find_zone(s, &s->particles.position[i].x, &k);
+        f->porous[i] = f->porous_before[i] = none;
+        if (!z) continue;
+        const double speed = take_part(z, u, part);
+        f->porous[i] = encode(z, s->dt*(find_linear(s, z, i) + 2*z->quadratic*speed));
+        f->porous_before[i] = (tobi_float4){ v.x, v.y, v.z, (float)(k + 1) };
+    }
+}
+
+void sph_porous_begin(tobi_system *s)
+{
+    if (s->sim->porous_count > 0)
+        tobi_launch(&s->sim->exec, TOBI_HOST(begin_range, 0, 0), s, 0, s->particles.count, NULL);
+}
+
+typedef struct brake { const tobi_system *s; const float *fall; } brake;
+
+static void brake_range(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const brake *b = view;
+    const tobi_system *s = b->s;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    (void)totals;
+    for (int64_t i = begin; i < end; i++) {
+        if (!(f->porous_before[i].w > 0)) continue;
+        const tobi_porous *z = &s->sim->porous[(int)f->porous_before[i].w - 1];
+        const double before[3] = { f->porous_before[i].x, f->porous_before[i].y, f->porous_before[i].z };
+        double part[3], more[3] = { 0 };
+        float x[3], *u = &s->particles.velocity[i].x;
+        const double push = s->dt*z->quadratic*take_part(z, before, part);
+        if (b->fall && s->sim->acceleration.acts)
+            tobi_acceleration_at(&s->sim->acceleration, &s->particles.position[i].x, more);
+        for (int a = 0; a < 3; a++) {
+            more[a] = b->fall ? b->fall[i]*s->dt*(s->gravity[a] + more[a]) : 0;
+            x[a] = (float)(u[a] + push*part[a] + more[a]);
+        }
+        sph_porous_yield(f->porous[i], x);
+        for (int a = 0; a < s->box.dimension; a++) u[a] = (float)(x[a] - more[a]);
+    }
+}
+
+void sph_porous_brake(tobi_system *s, const float *fall)
+{
+    brake b = { s, fall };
+    if (s->sim->porous_count > 0)
+        tobi_launch(&s->sim->exec, TOBI_HOST(brake_range, 0, 0), &b, 0, s->particles.count, NULL);
+}
+
+typedef struct look { const tobi_system *s; int zone; } look;
+
+/* totals: force, power, volume. */
+static void measure_range(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const look *l = view;
+    const tobi_system *s = l->s;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    const tobi_porous *z = &s->sim->porous[l->zone];
+    for (int64_t i = begin; i < end; i++) {
+        if ((int)f->porous_before[i].w - 1 != l->zone) continue;
+        const double before[3] = { f->porous_before[i].x, f->porous_before[i].y, f->porous_before[i].z };
+        const double mass = s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
+        const tobi_float4 v = s->particles.velocity[i];
+        const float u[3] = { v.x, v.y, v.z };
+        double was[3];
+        float part[3];
+        const double push = s->dt*z->quadratic*take_part(z, before, was);
+        sph_porous_part(f->porous[i], u, part);
+        for (int a = 0; a < s->box.dimension; a++) {
+            const double force = mass*(part[a] - push*was[a])/s->dt;
+            totals[a] += force;
+            totals[3] += 0.5*force*(before[a] + u[a]);
+        }
+        totals[4] += s->smoothing.volume;
+    }
+}
+
+void sph_porous_measure(tobi_system *s)
+{
+    for (int k = 0; k < s->sim->porous_count; k++) {
+        tobi_porous *z = &s->sim->porous[k];
+        const look l = { s, k };
+        double t[TOBI_TOTALS];
+        tobi_launch(&s->sim->exec, TOBI_HOST(measure_range, 5, 0), &l, 0, s->particles.count, t);
+        for (int a = 0; a < 3; a++) z->force[a] = t[a];
+        z->power = t[3];
+        z->volume = t[4];
+    }
+}

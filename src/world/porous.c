@@ -1,0 +1,185 @@
+/* The world's porous zones: added by definition after the fluids, read by number. Drawback: their boxes lie
+   along the axes. */
+#include "base/error.h"
+#include "base/param.h"
+#include "geom/vec3.h"
+#include "world/names.h"
+#include "world/world.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Stones that fill less of a zone leave its porosity out of account at little price. */
+static const double OPEN_ENOUGH = 0.8;
+
+#define REFUSE(key, ...) return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, __VA_ARGS__), "%s", key)
+
+static tobi_status place(const tobi_world *w, const tobi_porous_def *def, tobi_porous *z, tobi_error *err)
+{
+    const tobi_box *box = &w->system[0].box;
+    for (int a = 0; a < box->dimension; a++) {
+        z->lower[a] = def->box_min[a] - box->lower[a];
+        z->upper[a] = def->box_max[a] - box->lower[a];
+        if (!(z->upper[a] > z->lower[a]))
+            REFUSE("box.max", "porous zone '%s' reaches from %g to %g m in %c: allowed are upper corners "
+                   "above the lower ones", def->name, def->box_min[a], def->box_max[a], "xyz"[a]);
+        if (!(z->lower[a] < box->size[a] && z->upper[a] > 0))
+            REFUSE("box", "porous zone '%s' lies from %g to %g m in %c, outside of the domain", def->name,
+                   def->box_min[a], def->box_max[a], "xyz"[a]);
+    }
+    for (int k = 0; k < w->sim.porous_count; k++) {
+        const tobi_porous *other = &w->sim.porous[k];
+        int apart = 0;
+        for (int a = 0; a < box->dimension; a++)
+            apart |= z->lower[a] >= other->upper[a] || z->upper[a] <= other->lower[a];
+        if (!apart)
+            REFUSE("box", "porous zone '%s' overlaps '%s': allowed are boxes that touch at most", def->name,
+                   other->name);
+    }
+    return TOBI_OK;
+}
+
+/* Which of the four it is: exactly one. */
+static tobi_status check_kind(const tobi_porous_def *d, tobi_error *err)
+{
+    const int stones = d->stone_size > 0 || d->porosity > 0,
+              stems = d->stem_number > 0 || d->stem_diameter > 0,
+              screen = d->screen_loss > 0, direct = d->linear > 0 || d->quadratic > 0;
+    if (stones + stems + screen + direct != 1)
+        REFUSE("", "porous zone '%s' has %s of stones, stems, screen and resistance; allowed is one, with a "
+               "value above 0", d->name, stones + stems + screen + direct ? "more than one" : "none");
+    if (stones && !(d->stone_size > 0 && d->porosity > 0))
+        REFUSE("stones", "porous zone '%s': stones have a size and a porosity", d->name);
+    if (stems && !(d->stem_number > 0 && d->stem_diameter > 0))
+        REFUSE("stems", "porous zone '%s': stems have a number and a diameter", d->name);
+    return TOBI_OK;
+}
+
+/* The direction of stems or across a screen. */
+static tobi_status find_direction(const tobi_world *w, const tobi_porous_def *def, tobi_porous *z,
+                                  tobi_error *err)
+{
+    const int dimension = w->system[0].box.dimension, given = vec3_length(def->direction) > 0;
+    int thinnest = 0;
+    memcpy(z->direction, def->direction, sizeof z->direction);
+    for (int a = 1; a < dimension; a++)
+        if (z->upper[a] - z->lower[a] < z->upper[thinnest] - z->lower[thinnest]) thinnest = a;
+    if (!given && z->kind == TOBI_POROUS_ALONG) z->direction[thinnest] = 1;
+    if (!given && z->kind == TOBI_POROUS_ACROSS) vec3_sub(z->direction, z->direction, w->sim.def.gravity);
+    if (!(vec3_length(z->direction) > 0))
+        REFUSE("direction", "porous zone '%s': stems stand upwards, and there is no gravity; give their "
+               "direction", def->name);
+    vec3_normalize(z->direction);
+    if (dimension == 3 || z->direction[2] == 0) return TOBI_OK;
+    if (z->kind == TOBI_POROUS_ALONG || z->direction[0] != 0 || z->direction[1] != 0)
+        REFUSE("direction", "porous zone '%s': a direction in 2-D lies in the plane, or is that of stems "
+               "across it", def->name);
+    z->kind = TOBI_POROUS_ALL;
+    z->direction[2] = 0;
+    return TOBI_OK;
+}
+
+static void resist(const tobi_porous_def *d, tobi_porous *z, double across)
+{
+    const double n = d->porosity, solid = 1 - n, n3 = n*n*n;
+    z->linear = d->linear;
+    z->quadratic = d->quadratic + 0.5*d->stem_number*d->stem_diameter*d->stem_drag +
+                   0.5*d->screen_loss/across;
+    if (!(n > 0)) return;
+    z->porosity = n;
+    z->size = d->stone_size;
+    z->per_viscosity = d->linear_coefficient*solid*solid/(n3*d->stone_size*d->stone_size);
+    z->quadratic = d->quadratic_coefficient*solid/(n3*d->stone_size);
+}
+
+/* m: how thick the box is along its direction. */
+static double find_thickness(const tobi_porous *z, int dimension)
+{
+    double least = INFINITY;
+    for (int a = 0; a < dimension; a++)
+        if (fabs(z->direction[a]) > 0) least = fmin(least, (z->upper[a] - z->lower[a])/fabs(z->direction[a]));
+    return least;
+}
+
+tobi_status tobi_world_add_porous(tobi_world *w, const tobi_porous_def *def, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
+    TOBI_TRY(tobi_param_check(&tobi_porous_table, def, err));
+    TOBI_NEED(def->name, "the name of the zone");
+    tobi_porous z = { .kind = TOBI_POROUS_ALL };
+    if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more porous zones");
+    if (w->system[0].method->solids)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "%s knows no porous zones; they are for the liquids of the "
+                         "SPH methods", w->system[0].method->name);
+    if (w->sim.porous_count == TOBI_POROUS_LIMIT)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d porous zones", TOBI_POROUS_LIMIT);
+    TOBI_TRY(tobi_names_check_porous(w, def->name, err));
+    TOBI_TRY(place(w, def, &z, err));
+    TOBI_TRY(check_kind(def, err));
+    if (def->stem_number > 0) z.kind = TOBI_POROUS_ACROSS;
+    if (def->screen_loss > 0) z.kind = TOBI_POROUS_ALONG;
+    if (z.kind == TOBI_POROUS_ALL && vec3_length(def->direction) > 0)
+        REFUSE("direction", "porous zone '%s': a direction is of stems and of a screen; stones and "
+               "resistance act alike in all", def->name);
+    if (z.kind != TOBI_POROUS_ALL) TOBI_TRY(find_direction(w, def, &z, err));
+    resist(def, &z, def->screen_loss > 0 ? find_thickness(&z, w->system[0].box.dimension) : 1);
+    snprintf(z.name, sizeof z.name, "%s", def->name);
+    w->sim.porous[w->sim.porous_count++] = z;
+    return TOBI_OK;
+}
+
+const char *tobi_world_porous(const tobi_world *w, int zone, tobi_porous_info *info)
+{
+    if (!w || zone < 0 || zone >= w->sim.porous_count) return NULL;
+    const tobi_porous *z = &w->sim.porous[zone];
+    const tobi_fluid *f = &w->system[0].fluid[0];
+    if (!info) return z->name;
+    *info = (tobi_porous_info){ .power = z->power, .volume = z->volume, .quadratic = z->quadratic,
+                                .linear = z->linear, .along = z->kind == TOBI_POROUS_ALONG };
+    if (w->system[0].fluid_count > 0) info->linear += z->per_viscosity*f->viscosity/f->density;
+    memcpy(info->force, z->force, sizeof info->force);
+    if (z->kind != TOBI_POROUS_ALL) memcpy(info->direction, z->direction, sizeof info->direction);
+    return z->name;
+}
+
+/* Whether liquid is in it at the start, or may come. */
+static int can_be_wet(const tobi_world *w, const tobi_porous *z)
+{
+    const tobi_system *s = &w->system[0];
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        int inside = 1;
+        for (int a = 0; a < s->box.dimension; a++)
+            inside &= (&s->particles.position[i].x)[a] >= z->lower[a] &&
+                      (&s->particles.position[i].x)[a] < z->upper[a];
+        if (inside) return 1;
+    }
+    return 0;
+}
+
+tobi_status tobi_world_note_porous(tobi_world *w, tobi_error *err)
+{
+    const double d = w->system[0].smoothing.spacing;
+    char text[320];
+    for (int k = 0; k < w->sim.porous_count; k++) {
+        const tobi_porous *z = &w->sim.porous[k];
+        double least = INFINITY;
+        for (int a = 0; a < w->system[0].box.dimension; a++) least = fmin(least, z->upper[a] - z->lower[a]);
+        if (least < 2*d*(1 - 1e-9)) {
+            snprintf(text, sizeof text, "is %.4g m thin, %.2g spacings: particles pass it in a few steps, "
+                     "and its drag is that of a thicker or thinner one; a spacing of %.3g m would do\n",
+                     least, least/d, 0.5*least);
+            TOBI_TRY(tobi_world_add_notes(w, "porous zone", z->name, text, err));
+        }
+        if (z->porosity > 0 && z->porosity < OPEN_ENOUGH) {
+            snprintf(text, sizeof text, "has stones of a porosity of %.3g, and liquid fills it as if there "
+                     "were none: levels in it change too slowly by this factor, and liquid in it has too "
+                     "little inertia; it resists as it should\n", z->porosity);
+            TOBI_TRY(tobi_world_add_notes(w, "porous zone", z->name, text, err));
+        }
+        if (can_be_wet(w, z)) continue;
+        TOBI_TRY(tobi_world_add_notes(w, "porous zone", z->name, "has no liquid in it at the start: it acts "
+                                      "once liquid comes\n", err));
+    }
+    return TOBI_OK;
+}
