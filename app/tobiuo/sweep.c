@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { KEY_SLURM = KEY_OWN, KEY_ONLY, KEY_TABLE, KEY_PLOT };
+enum { KEY_SLURM = KEY_OWN, KEY_ONLY, KEY_TABLE, KEY_PLOT, KEY_WAVES };
 
 static const struct argp_option options[] = {
     { "set", KEY_SET, "PATH=A,B,...", 0, "values of a key of the scene; several --set: all combinations", 0 },
@@ -21,6 +21,8 @@ static const struct argp_option options[] = {
     { "plot", KEY_PLOT, "COLUMN", 0,
       "what the plot shows: a column of probes.csv, lines.csv, joints.csv or history.csv; or of a body: "
       "BODY_position_x, BODY_force_z", 0 },
+    { "waves", KEY_WAVES, "OPTIONS", 0, "at the end \"tobiuo waves\" of each run with these options, and its "
+      "tables of all runs in one", 0 },
     { 0 }
 };
 
@@ -182,6 +184,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_ONLY: s->only = parse_count(state, "--only", value, 0, SWEEP_RUNS - 1); break;
     case KEY_TABLE: s->table = 1; break;
     case KEY_PLOT: s->plot = value; break;
+    case KEY_WAVES: s->waves = value; break;
     default: return parse_argument(state, key, value, "SCENE", &s->scene);
     }
     return 0;
@@ -244,6 +247,7 @@ static int do_sweep(sweep *s)
     if (s->only >= 0 || code == EXIT_INTERRUPTED) return code;
     int drawn = sweep_write_table(s);
     if (!drawn) drawn = sweep_draw(s);
+    if (!drawn && s->waves) drawn = sweep_analyse_waves(s);
     return code ? code : drawn;
 }
 

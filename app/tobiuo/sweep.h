@@ -21,7 +21,7 @@ typedef struct sweep {
     char *own_dir;                  /* owned: dir without --out                                */
     sweep_axis *axes;
     int axis_count, runs;
-    const char *until, *plot;       /* NULL: not given                                         */
+    const char *until, *plot, *waves;        /* NULL: not given                                */
     int jobs, slurm, only, table;   /* only: one run by its number, -1 = all                   */
 } sweep;
 
@@ -43,3 +43,9 @@ int sweep_write_slurm(const sweep *s);
 /* sweep_table.c: sweep.csv, sweep.txt and the plot of what there is. */
 int sweep_write_table(const sweep *s);
 int sweep_draw(const sweep *s);
+/* A text as a cell of a CSV table, between quotes where it must be. */
+void sweep_put_cell(FILE *out, const char *text);
+
+/* sweep_waves.c: tobiuo waves of all complete runs: sweep_waves.csv, sweep_wave_groups.csv and
+   sweep_wave_responses.csv. The exit code of the worst. */
+int sweep_analyse_waves(const sweep *s);

@@ -250,6 +250,7 @@ static void put_command(const sweep *s, FILE *out)
     if (s->until) fprintf(out, " --until %s", s->until);
     fputs(" --out", out);
     put_quoted(out, s->dir);
+    if (s->waves) fputs(" --waves", out), put_quoted(out, s->waves);
 }
 
 int sweep_write_slurm(const sweep *s)

@@ -189,7 +189,7 @@ static void add_row(const sweep *s, grid *g, int run, const measures *m)
     json_decref(summary);
 }
 
-static void put_csv_cell(FILE *out, const char *text)
+void sweep_put_cell(FILE *out, const char *text)
 {
     if (!strpbrk(text, ",\"\n")) {
         fputs(text, out);
@@ -221,7 +221,7 @@ static int write_grid(const sweep *s, const grid *g, const char *file, int align
             const char *cell = g->cell[row*g->columns + k];
             if (aligned) fprintf(out, "%s%*s", k ? "  " : "", width_of(g, k), cell);
             else if (k) fputc(',', out);
-            if (!aligned) put_csv_cell(out, cell);
+            if (!aligned) sweep_put_cell(out, cell);
         }
         fputc('\n', out);
     }

@@ -96,6 +96,29 @@ if command -v gnuplot > /dev/null; then check "a picture" test -s whole/plots/wa
 expect 0 "" waves whole --response raft
 check "without --gauges the first gauge" grep -q "^waves: G1" out.txt
 
+# --- of all runs of a sweep -------------------------------------------------------------------------
+cat > small.json <<'JSON'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [4, 0.6] }, "spacing": 0.05, "end_time": 6, "method": "isph",
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [4, 0.4] } } ] } ],
+  "frame": { "surge": { "amplitude": 0.02, "period": 1.2 } },
+  "bodies": [ { "name": "raft", "box": { "min": [0.8, 0.3], "max": [1, 0.5] }, "dynamics": "free", "density": 500,
+                "locked": "x,turn" } ],
+  "probes": [ { "name": "G1", "kind": "level", "position": [0.5, 0.4] } ],
+  "output": { "interval": 0.1 } }
+JSON
+sweep="sweep small.json --out swept --set frame.surge.period=1.2,1.6"
+expect 0 "" $sweep --waves "--from 1.2 --response raft"
+check "a row for each gauge of each run" test "$(cut -d, -f1-3 swept/sweep_waves.csv | paste -sd ' ')" = \
+    "run,period,gauge 0,1.2,G1 1,1.6,G1"
+check "and each response" test "$(cut -d, -f1-3 swept/sweep_wave_responses.csv | paste -sd ' ')" = \
+    "run,period,response 0,1.2,raft_y 1,1.6,raft_y"
+check "no groups" test ! -e swept/sweep_wave_groups.csv
+expect 0 "" $sweep --table --waves " --from  1.2"
+check "no responses of an earlier call" test ! -e swept/sweep_wave_responses.csv
+expect 1 "--waves '--from 99': swept/period=1.6 could not be analysed" $sweep --table --waves "--from 99"
+expect 0 "" $sweep --slurm --waves "--from 0.5"
+check "the array job knows of it" grep -q "sweep.* --waves '--from 0.5' --table" swept/sweep.slurm
+
 # --- messages ---------------------------------------------------------------------------------------
 expect 1 "--response keel: whole has no body of this name, and no such column" waves whole --response keel
 expect 1 "--response post: the body does not move" waves whole --response post
