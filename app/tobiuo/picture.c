@@ -111,7 +111,7 @@ static void write_data(FILE *script, const picture *p, const panel *a, int logar
         fprintf(script, "$curve%d << END\n", k);
         for (size_t i = 0; i < c->count; i++) {
             if (is_drawn(p, c, i, logarithmic)) fprintf(script, "%.9g %.9g\n", c->x[i], c->y[i]);
-            else if (c->style != CURVE_POINTS) fputs("? ?\n", script);       /* a gap in the line */
+            else if (c->style != CURVE_POINTS) fputs("NaN NaN\n", script);   /* a gap, which "?" is not */
         }
         fputs("END\n", script);
     }

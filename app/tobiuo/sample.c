@@ -110,14 +110,11 @@ static int find_span(sample_run *s)
                    tobi_results_time(s->results, 0), tobi_results_time(s->results, count - 1));
 }
 
-/* The number of a fluid or solid by its name in resolved.json: fluids first, as files number them. */
-static int find_named(sample_run *s, const char *list, const char *name)
+/* The number of a fluid or solid by its name: fluids first, as files number them. */
+static int find_named(sample_run *s, const json_t *scene, const char *list, const char *name)
 {
     const char *names[64];
     size_t count = 0;
-    char *path = join_path(s->options->dir, "resolved.json");
-    json_t *scene = json_load_file(path, 0, NULL);
-    free(path);
     const size_t fluids = json_array_size(json_object_get(scene, "fluids"));
     const json_t *all = json_object_get(scene, list);
     for (size_t k = 0; k < json_array_size(all) && count < 64; k++) {
@@ -126,25 +123,41 @@ static int find_named(sample_run *s, const char *list, const char *name)
         if (own && strcmp(own, name) == 0) s->material = (int)(k + (*list == 's' ? fluids : 0));
     }
     const char *near = s->material < 0 ? tobi_suggest(name, names, count) : NULL;
-    const int code = s->material >= 0 ? 0
+    return s->material >= 0 ? 0
         : complain("%s has no %s '%s'%s%s%s", s->options->dir, *list == 's' ? "solid" : "fluid", name,
                    near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
-    json_decref(scene);
-    return code;
+}
+
+/* Points of a body that gives its own spacing may lie closer than those of the liquid. */
+static void compare_spacings(sample_run *s, const json_t *scene)
+{
+    const json_t *bodies = json_object_get(scene, "bodies");
+    for (size_t k = 0; k < json_array_size(bodies); k++) {
+        const json_t *own = json_object_get(json_array_get(bodies, k), "spacing");
+        s->finer |= json_number_value(json_is_number(own) ? own : json_object_get(scene, "spacing")) <
+                    0.99*s->spacing;
+    }
 }
 
 static int find_material(sample_run *s)
 {
     const sample_options *o = s->options;
+    char *path = join_path(o->dir, "resolved.json");
+    json_error_t wrong;
+    json_t *scene = json_load_file(path, 0, &wrong);
+    int code = scene ? 0 : complain("%s: %s", path, wrong.text), chosen = -1;
+    free(path);
     s->material = -1;
-    int code = o->fluid ? find_named(s, "fluids", o->fluid)
-             : o->solid ? find_named(s, "solids", o->solid) : 0;
-    int chosen = s->material;
+    if (!code && o->fluid) code = find_named(s, scene, "fluids", o->fluid);
+    if (!code && o->solid) code = find_named(s, scene, "solids", o->solid);
+    chosen = s->material;
     for (int k = 0; k < s->looks.material_count && chosen < 0; k++)
         if (s->looks.materials[k].liquid) chosen = k;
     if (!code && (chosen < 0 || chosen >= s->looks.material_count))
         code = complain("%s is a run without a liquid; --solid NAME takes a solid", o->dir);
     if (!code) s->spacing = 2*tobi_looks_radius(&s->looks, chosen);
+    if (!code) compare_spacings(s, scene);
+    json_decref(scene);
     return code;
 }
 
@@ -216,6 +229,14 @@ static void leave_out(const sample_run *s, tobi_moment *m)
     }
 }
 
+static int take_solids(sample_run *s, int64_t output, double (**points)[3], int64_t *count)
+{
+    tobi_error err = { 0 };
+    if (s->finer) return take_body_points(s->results, output, s->spacing, &s->thinned, points, count);
+    return tobi_results_read_bodies(s->results, output, points, count, &err) == TOBI_OK ? 0
+        : complain("%s", err.text);
+}
+
 static int sample_moment(sample_run *s, int64_t output, const tobi_moment *m)
 {
     tobi_sample_def d = tobi_default_sample();
@@ -239,7 +260,7 @@ static int sample_moment(sample_run *s, int64_t output, const tobi_moment *m)
                             s->field[f].name);
         fields[f] = (tobi_sample_field){ field->components, field->values, s->field[f].at };
     }
-    int code = take_body_points(s->results, output, s->spacing, &s->thinned, &solids, &d.solid_count);
+    int code = take_solids(s, output, &solids, &d.solid_count);
     d.solids = (const double (*)[3])solids;
     if (!code && tobi_sample_make(&d, &err) != TOBI_OK) code = complain("%s", err.text);
     free(solids);

@@ -55,6 +55,7 @@ typedef struct sample_run {
     double (*moved)[3];                /* places in the domain; NULL without a body */
     table bodies;                      /* bodies.csv, with a body */
     sample_frame start, now;
+    int finer;                         /* some body has particles nearer to each other than the liquid */
     thinned thinned;
     sample_shown shown[SAMPLE_SHOWN];
     int shown_count;

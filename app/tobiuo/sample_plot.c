@@ -55,9 +55,9 @@ static void fill_panel(const sample_run *s, const quantity *q, char labels[][48]
         for (int l = 0; l < lines; l++) {
             const int number = lines > 1 ? l : k;
             const curve like = { .label = labels[number], .colour = number };
-            const curve band = { .label = "mean +- rms", .style = CURVE_DASHED, .colour = 6 };
+            curve band = { .label = "mean +- rms", .style = CURVE_DASHED, .colour = 6 };
             add_curve(s, a, &like, q, l, values, NULL, 0);
-            for (int side = -1; mean && lines == 1 && side <= 1; side += 2)
+            for (int side = -1; mean && lines == 1 && side <= 1; side += 2, band.label = "")
                 add_curve(s, a, &band, q, l, values, rms, side);
         }
         free(values);

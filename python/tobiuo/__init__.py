@@ -10,7 +10,9 @@ All units are SI. A call that fails raises tobiuo.Error with the text of the lib
 from .library import Error, version as __version__
 from .results import Moment, Results, read_table
 from .run import run
+from .sampling import Sample, sample
 from .scene import check, describe, shipped
 from .world import World
 
-__all__ = ["Error", "Moment", "Results", "World", "__version__", "check", "describe", "read_table", "run", "shipped"]
+__all__ = ["Error", "Moment", "Results", "Sample", "World", "__version__", "check", "describe", "read_table", "run", "sample",
+           "shipped"]

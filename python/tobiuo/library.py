@@ -57,6 +57,11 @@ _libc_ffi.cdef("void free(void *);")
 _libc = _libc_ffi.dlopen(None)
 
 
+def free_pointer(pointer):
+    """Of memory that the caller owns."""
+    _libc.free(pointer)
+
+
 def raise_error(status, error):
     raise Error(text_of(error.text) or text_of(lib.tobi_status_text(status)),
                 text_of(lib.tobi_status_text(status)), text_of(error.key))

@@ -27,12 +27,13 @@ static const struct { const char *folder, *pattern; } ours[] = {
     { "", "*.pvd" },
     { "fluid", "fluid_" SIX "*.vtu" }, { "bodies", "bodies_" SIX "*.vtu" },
     { "grid", "grid_" SIX "*.vtu" }, { "surface", "surface_" SIX "*.vtp" },
+    { "sample", "*_" SIX ".vti" }, { "sample", "*_mean.vti" }, { "sample", "*.pvd" }, { "sample", "*.csv" },
     { "foam", "foam_" SIX "*.vtp" }, { "tractions", "*_" SIX "*.vtp" },
     { "surfaces", "*_" SIX "*.vtp" }, { "surfaces", "*_" SIX "*.stl" },
     { "frames", "*_" SIX "*.png" }, { "ply", "fluid_" SIX "*.ply" }, { "obj", "*_" SIX "*.obj" },
     { "checkpoints", "checkpoint_*.h5" }, { "checkpoints", "checkpoint_*.json" },
 };
-static const char *const folders[] = { "", "fluid", "bodies", "grid", "surface", "surfaces", "foam",
+static const char *const folders[] = { "", "fluid", "bodies", "grid", "surface", "surfaces", "foam", "sample",
                                       "tractions", "frames", "ply", "obj", "checkpoints" };
 
 char *tobi_record_path(const char *dir, const char *format, ...)

@@ -56,6 +56,43 @@ class Module(unittest.TestCase):
         tobiuo.run("pool.json", "theirs", until=0.05, force=True)
         self.assertEqual(tobiuo.Results("theirs").times[-1], 0.05)
 
+    def test_fields_at_places_are_those_of_the_program(self):
+        pathlib.Path("sampled.json").write_text(json.dumps(with_bodies(FLOAT)), encoding="utf-8")
+        subprocess.run([program, "run", "sampled.json", "--out", "sampled", "--quiet"], check=True)
+        subprocess.run([program, "sample", "sampled", "--line", "0.05,0 to 0.35,0.3", "--count", "31", "--from", "0.1"],
+                       check=True, capture_output=True)
+        results = tobiuo.Results("sampled")
+        table = tobiuo.read_table("sampled/sample/line.csv")
+        places = np.stack([table["x [m]"], table["y [m]"]], 1)
+        found = results.sample(-1, places)
+        self.assertTrue((found.wet == (table["wet"] == 1)).all() and 5 < found.wet.sum() < 25)
+        for name, column in (("pressure", "pressure [Pa]"), ("velocity", "velocity_x [m/s]")):
+            values = found.fields[name] if name == "pressure" else found.fields[name][:, 0]
+            told = np.array([float(text) if text else np.nan for text in table[column]])
+            self.assertTrue(np.array_equal(np.isnan(values), ~found.wet))
+            np.testing.assert_allclose(values[found.wet], told[found.wet], rtol=1e-8, atol=1e-12)
+        self.assertEqual(list(results.sample(0, places, ["density"], fluid="water").fields), ["density"])
+        with self.assertRaisesRegex(KeyError, "heat.*velocity"):
+            results.sample(0, places, ["heat"])
+        with self.assertRaisesRegex(KeyError, "oil.*water"):
+            results.sample(0, places, fluid="oil")
+        with self.assertRaisesRegex(ValueError, "places"):
+            results.sample(0, [1, 2])
+
+    def test_fields_of_arrays(self):
+        x = (np.stack(np.meshgrid(*[np.arange(8)]*3), -1).reshape(-1, 3) + 0.5)/8
+        places = np.random.default_rng(1).uniform(0, 1, (50, 3))
+        found = tobiuo.sample(places, x, {"height": x[:, 2], "place": x}, 1/8, ([0, 0, 0], [1, 1, 1]))
+        np.testing.assert_allclose(found.fields["place"], places, atol=1e-12)
+        np.testing.assert_allclose(found.fields["height"], places[:, 2], atol=1e-12)
+        self.assertTrue(found.wet.all())
+        empty = tobiuo.sample(places, x[:0], {"height": x[:0, 2]}, 1/8, ([0, 0, 0], [1, 1, 1]))
+        self.assertTrue(np.isnan(empty.fields["height"]).all() and not empty.wet.any())
+        with self.assertRaisesRegex(ValueError, "height"):
+            tobiuo.sample(places, x, {"height": x[:5, 2]}, 1/8, ([0, 0, 0], [1, 1, 1]))
+        with self.assertRaisesRegex(tobiuo.Error, "spacing of 0 m"):
+            tobiuo.sample(places, x, {}, 0, ([0, 0, 0], [1, 1, 1]))
+
     def test_results_are_the_world(self):
         world = tobiuo.run(with_bodies(FLOAT), "results", set={"output.fields": ["velocity", "pressure"]})
         results = tobiuo.Results("results")

@@ -123,6 +123,59 @@ check "a solid" test "$(wet cube '0.45,0.1,0.005 to 0.45,0.1,0.4' --solid cube)"
 expect 0 "" sample three --box "0,0.1,0 to 0.6,0.1,0.4"
 vtk "a plane in 3-D" three/sample/box_000001.vti points=651 'bounds=[0, 0.6, 0.1, 0.1, 0, 0.4]'
 
+# Flows with exact solutions. The bound of the first is that of its case, test/physics/poiseuille.
+physics="$here/../physics"
+sed '/"dfsph"/d' "$physics/poiseuille/scene.json" > plates.json
+expect 0 "" run plates.json --set method=isph --out plates --quiet
+expect 0 "" sample plates --line "0.0025,0 to 0.0025,0.01" --count 41 --mean --from 0.5 --fields velocity
+check "Poiseuille flow" $python - <<'END2'
+import csv, math
+H, G, NU = 0.01, 0.08, 1e-4
+def profile(y, t):
+    u = G/(2*NU)*y*(H - y)
+    for n in range(40):
+        k = (2*n + 1)*math.pi/H
+        u -= 4*G*H*H/(NU*math.pi**3*(2*n + 1)**3)*math.sin(k*y)*math.exp(-k*k*NU*t)
+    return u
+times = sorted({float(r["time [s]"]) for r in csv.DictReader(open("plates/sample/line.csv"))})
+assert len(times) == 11
+for row in csv.DictReader(open("plates/sample/line_mean.csv")):
+    exact = sum(profile(float(row["y [m]"]), t) for t in times)/len(times)
+    assert abs(float(row["mean_velocity_x [m/s]"]) - exact) < 0.02*G*H*H/(8*NU), (row, exact)
+END2
+# The vortex at its start: half the spacing, a quarter of the error. The bounds were set after 2.2 % and 0.56 % had
+# been seen.
+cp "$physics/taylor_green/vortex.lua" .
+sed '/"dfsph"/d' "$physics/taylor_green/scene.json" > vortex.json
+for n in 25 50; do
+    expect 0 "" run vortex.json --set method=isph --set spacing=$(awk "BEGIN { print 1/$n }") --out vortex$n --quiet \
+        --until 0.001
+    expect 0 "" sample vortex$n --box "0,0 to 1,1" --cell 0.013 --until 1e-6 --fields velocity
+    vtk "vortex $n" vortex$n/sample/box_000000.vti points=5929
+done
+if $python -c "import vtk" 2> /dev/null; then
+    check "the vortex in second order" $python - <<'END2'
+import math, numpy, vtk
+from vtk.util.numpy_support import vtk_to_numpy
+def error(n):
+    reader = vtk.vtkXMLImageDataReader()
+    reader.SetFileName(f"vortex{n}/sample/box_000000.vti")
+    reader.Update()
+    image, k = reader.GetOutput(), 2*math.pi
+    x = numpy.array([image.GetPoint(i)[:2] for i in range(image.GetNumberOfPoints())])
+    u = vtk_to_numpy(image.GetPointData().GetArray("velocity"))[:, :2]
+    exact = numpy.stack([numpy.sin(k*x[:, 0])*numpy.cos(k*x[:, 1]), -numpy.cos(k*x[:, 0])*numpy.sin(k*x[:, 1])], 1)
+    assert vtk_to_numpy(image.GetPointData().GetArray("wet")).min() == 1
+    return math.sqrt(((u - exact)**2).sum(1).mean())
+coarse, fine = error(25), error(50)
+assert coarse < 0.025 and fine < 0.007 and 3 < coarse/fine < 5, (coarse, fine)
+END2
+fi
+
+# A new run takes away what belongs to the one before.
+expect 0 "" run three.json --out three --quiet --force
+check "a new run takes it away" test ! -e three/sample
+
 # What is refused.
 expect 1 "there are no results of a run" sample nowhere --line "0,0 to 1,1"
 expect 2 "which DIR?" sample --line "0,0 to 1,1"

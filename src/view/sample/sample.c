@@ -8,7 +8,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { MOST_VALUES = 9*TOBI_SAMPLE_FIELD_LIMIT, UNKNOWNS = 4 };
+enum { UNKNOWNS = 4, MOST_AROUND = 512 };       /* 13 in 2-D, 33 in 3-D in liquid that is not crushed */
 static const double REACH = 2;           /* spacings                                            */
 static const double FULL_ENOUGH = 0.5;   /* of the room without bodies: a flat surface           */
 static const double DEPTH = 0.1;         /* spacings that a place may lie within a body, for rounding */
@@ -50,20 +50,48 @@ static int list_images(const sample_view *v, const double place[3], image out[27
 
 static double find_square(const sample_view *v, const double a[3], const double b[3])
 {
-    double sum = 0;
-    for (int k = 0; k < v->def->dimension; k++) sum += (a[k] - b[k])*(a[k] - b[k]);
-    return sum;
+    const double x = a[0] - b[0], y = a[1] - b[1], z = v->def->dimension == 3 ? a[2] - b[2] : 0;
+    return x*x + y*y + z*z;
 }
 
-/* The share of what is around that these points fill. */
-static double find_share(const sample_view *v, const sample_cells *c, const image *images, int count)
+/* The particles around a place: rows, weights, and the way to each in reaches. */
+typedef struct around {
+    int count;
+    int32_t row[MOST_AROUND];
+    double w[MOST_AROUND], p[MOST_AROUND][3];
+} around;
+
+static void find_around(const sample_view *v, const image *images, int count, around *near)
+{
+    const double reach2 = v->reach*v->reach;
+    near->count = 0;
+    for (int k = 0; k < count; k++) {
+        const double *x = images[k].x;
+        int64_t state = 0;
+        int32_t begin, end;
+        while (images[k].real && sample_next_run(&v->liquid, x, v->reach, &state, &begin, &end))
+            for (int32_t i = begin; i < end; i++) {
+                const double *y = v->liquid.x[i], r2 = find_square(v, x, y);
+                if (!(r2 < reach2) || near->count == MOST_AROUND) continue;
+                const int n = near->count++;
+                near->row[n] = v->liquid.row[i];
+                near->w[n] = view_weight(r2, reach2);
+                for (int a = 0; a < 3; a++) near->p[n][a] = (y[a] - x[a])/v->reach;
+            }
+    }
+}
+
+/* The share of what is around that these points fill, by images that are mirrored only or by all. */
+static double find_share(const sample_view *v, const sample_cells *c, const image *images, int count,
+                         bool all)
 {
     const double reach2 = v->reach*v->reach;
     double sum = 0;
     for (int k = 0; k < count; k++) {
         int64_t state = 0;
         int32_t begin, end;
-        while (sample_next_run(c, images[k].x, v->reach, &state, &begin, &end))
+        while ((all || !images[k].real) &&
+               sample_next_run(c, images[k].x, v->reach, &state, &begin, &end))
             for (int32_t i = begin; i < end; i++) {
                 const double r2 = find_square(v, images[k].x, c->x[i]);
                 if (r2 < reach2) sum += view_weight(r2, reach2);
@@ -72,11 +100,12 @@ static double find_share(const sample_view *v, const sample_cells *c, const imag
     return sum/v->full;
 }
 
-static bool is_wet(const sample_view *v, const image *images, int count)
+static bool is_wet(const sample_view *v, const image *images, int count, const around *near)
 {
-    const double liquid = find_share(v, &v->liquid, images, count);
-    if (liquid <= 0.5*FULL_ENOUGH) return false;
-    const double solid = find_share(v, &v->solid, images, count);
+    double liquid = find_share(v, &v->liquid, images, count, false);
+    for (int n = 0; n < near->count; n++) liquid += near->w[n]/v->full;
+    if (near->count == 0 || liquid <= 0.5*FULL_ENOUGH) return false;
+    const double solid = find_share(v, &v->solid, images, count, true);
     return solid <= liquid + DEPTH && liquid > FULL_ENOUGH*(1 - fmin(solid, 0.5));
 }
 
@@ -103,84 +132,48 @@ static bool solve_first(int n, double m[UNKNOWNS][UNKNOWNS], double c[UNKNOWNS])
     return true;
 }
 
-/* The particles around: sum over them of weight times (1, x, y, z)^2, lengths in reaches. */
-static void find_moments(const sample_view *v, const image *images, int count, double m[UNKNOWNS][UNKNOWNS])
+/* Factors of the fit for a linear field. False: the particles lie in a plane, or nearly. */
+static bool find_factors(const sample_view *v, const around *near, double factor[MOST_AROUND])
 {
-    const int n = v->def->dimension + 1;
-    const double reach2 = v->reach*v->reach;
-    memset(m, 0, UNKNOWNS*sizeof *m);
-    for (int k = 0; k < count; k++) {
-        const double *x = images[k].x;
-        int64_t state = 0;
-        int32_t begin, end;
-        while (images[k].real && sample_next_run(&v->liquid, x, v->reach, &state, &begin, &end))
-            for (int32_t e = begin; e < end; e++) {
-                const double *y = v->liquid.x[e], r2 = find_square(v, x, y);
-                if (!(r2 < reach2)) continue;
-                const double w = view_weight(r2, reach2);
-                const double p[UNKNOWNS] = { 1, (y[0] - x[0])/v->reach, (y[1] - x[1])/v->reach,
-                                             n > 3 ? (y[2] - x[2])/v->reach : 0 };
-                for (int i = 0; i < n; i++)
-                    for (int j = 0; j <= i; j++) m[i][j] += w*p[i]*p[j];
-            }
+    const int unknowns = v->def->dimension + 1;
+    double m[UNKNOWNS][UNKNOWNS] = { { 0 } }, c[UNKNOWNS];
+    for (int n = 0; n < near->count; n++) {
+        const double p[UNKNOWNS] = { 1, near->p[n][0], near->p[n][1], near->p[n][2] };
+        for (int i = 0; i < unknowns; i++)
+            for (int j = 0; j <= i; j++) m[i][j] += near->w[n]*p[i]*p[j];
     }
+    if (!solve_first(unknowns, m, c)) return false;
+    for (int n = 0; n < near->count; n++) {
+        factor[n] = c[0];
+        for (int a = 0; a < v->def->dimension; a++) factor[n] += c[a + 1]*near->p[n][a];
+        factor[n] *= near->w[n];
+    }
+    return true;
 }
 
-/* Sums of the values by the factors of the fit, and by weights. */
-typedef struct sums { double gain, weight, fit[MOST_VALUES], mean[MOST_VALUES]; } sums;
-
-static void add_values(const sample_view *v, int32_t row, double factor, double weight, sums *s)
+/* The fit, unless it amplifies too much what scatters among the particles; then the weighted mean. */
+static void choose_factors(const sample_view *v, const around *near, double factor[MOST_AROUND])
 {
-    int n = 0;
-    s->gain += fabs(factor);
-    s->weight += weight;
+    double gain = 0, weight = 0;
+    const bool fits = find_factors(v, near, factor);
+    for (int n = 0; n < near->count; n++) gain += fits ? fabs(factor[n]) : 0, weight += near->w[n];
+    if (fits && gain <= MOST_GAIN) return;
+    for (int n = 0; n < near->count; n++) factor[n] = near->w[n]/weight;
+}
+
+static void write_place(const sample_view *v, int64_t place, bool wet, const around *near)
+{
+    double factor[MOST_AROUND];
+    if (wet) choose_factors(v, near, factor);
     for (int f = 0; f < v->def->field_count; f++) {
         const tobi_sample_field *field = &v->def->fields[f];
-        const double *values = field->values + (int64_t)row*field->components;
-        for (int k = 0; k < field->components; k++, n++)
-            s->fit[n] += factor*values[k], s->mean[n] += weight*values[k];
-    }
-}
-
-static void find_sums(const sample_view *v, const image *images, int count, const double c[UNKNOWNS], sums *s)
-{
-    const double reach2 = v->reach*v->reach;
-    for (int k = 0; k < count; k++) {
-        const double *x = images[k].x;
-        int64_t state = 0;
-        int32_t begin, end;
-        while (images[k].real && sample_next_run(&v->liquid, x, v->reach, &state, &begin, &end))
-            for (int32_t e = begin; e < end; e++) {
-                const double *y = v->liquid.x[e], r2 = find_square(v, x, y);
-                if (!(r2 < reach2)) continue;
-                const double w = view_weight(r2, reach2);
-                double factor = c[0];
-                for (int a = 0; a < v->def->dimension; a++) factor += c[a + 1]*(y[a] - x[a])/v->reach;
-                add_values(v, v->liquid.row[e], w*factor, w, s);
-            }
-    }
-}
-
-/* Values: the fit, unless it amplifies too much what scatters among the particles. */
-static void write_place(const sample_view *v, int64_t place, bool wet, const image *images, int count,
-                        int total)
-{
-    sums s;
-    double m[UNKNOWNS][UNKNOWNS], c[UNKNOWNS] = { 0 };
-    bool fits = false;
-    s.gain = s.weight = 0;
-    memset(s.fit, 0, (size_t)total*sizeof *s.fit);
-    memset(s.mean, 0, (size_t)total*sizeof *s.mean);
-    if (wet) {
-        find_moments(v, images, count, m);
-        fits = solve_first(v->def->dimension + 1, m, c);
-        find_sums(v, images, count, c, &s);
-    }
-    const bool few = !fits || s.gain > MOST_GAIN;
-    for (int f = 0, n = 0; f < v->def->field_count; f++) {
-        const tobi_sample_field *field = &v->def->fields[f];
-        for (int k = 0; k < field->components; k++, n++)
-            field->at[place*field->components + k] = !wet ? NAN : few ? s.mean[n]/s.weight : s.fit[n];
+        const int components = field->components;
+        double *at = field->at + place*components;
+        for (int k = 0; k < components; k++) at[k] = wet ? 0 : NAN;
+        for (int n = 0; wet && n < near->count; n++) {
+            const double *values = field->values + (int64_t)near->row[n]*components;
+            for (int k = 0; k < components; k++) at[k] += factor[n]*values[k];
+        }
     }
 }
 
@@ -188,8 +181,7 @@ static void sample_places(const void *view, int64_t begin, int64_t end)
 {
     const sample_view *v = view;
     const tobi_sample_def *d = v->def;
-    int total = 0;
-    for (int f = 0; f < d->field_count; f++) total += d->fields[f].components;
+    around near;
     for (int64_t i = begin; i < end; i++) {
         image images[27];
         double x[3] = { d->places[i][0], d->places[i][1], d->dimension == 3 ? d->places[i][2] : 0 };
@@ -200,9 +192,10 @@ static void sample_places(const void *view, int64_t begin, int64_t end)
             inside &= x[a] >= d->box_min[a] && x[a] <= d->box_max[a];
         }
         const int count = inside ? list_images(v, x, images) : 0;
-        const bool wet = inside && is_wet(v, images, count);
+        find_around(v, images, count, &near);
+        const bool wet = inside && is_wet(v, images, count, &near);
         if (d->wet) d->wet[i] = wet;
-        write_place(v, i, wet, images, count, total);
+        write_place(v, i, wet, &near);
     }
 }
 
