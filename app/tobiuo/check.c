@@ -81,6 +81,20 @@ static void print_bodies(const tobi_world *world, int dimension)
     if (count > LISTED) printf("body             and %d more that move by forces\n", count - LISTED);
 }
 
+/* What porous zones resist. */
+static void print_zones(const tobi_world *world)
+{
+    tobi_porous_info z;
+    const char *name;
+    for (int k = 0; (name = tobi_world_porous(world, k, &z)); k++) {
+        printf("porous zone      %s: %.4g 1/s, %.4g 1/m", name, z.linear, z.quadratic);
+        if (z.direction[0] != 0.0 || z.direction[1] != 0.0 || z.direction[2] != 0.0)
+            printf(" %s (%.3g, %.3g, %.3g)", z.along ? "along" : "across", z.direction[0], z.direction[1],
+                   z.direction[2]);
+        printf("\n");
+    }
+}
+
 /* The first steps of a run, and what they tell of all. */
 typedef struct trial {
     int steps;               /* taken; below 2 nothing is known             */
@@ -143,6 +157,7 @@ static void print_scene(const tobi_scene *scene, const tobi_world *world, const 
     print_step(d, world, t);
     print_solids(world, d->dimension);
     print_bodies(world, d->dimension);
+    print_zones(world);
     print_notes(world, stdout, "note             ");
     if (tobi_scene_import_table(scene))
         printf("\nA scene of %s. What became of its keys:\n\n%s\n", tobi_scene_import_program(scene),

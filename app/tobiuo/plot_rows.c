@@ -31,6 +31,7 @@ const picture_row plot_history[] = {
           { { "given by motions", "motion_work", NULL, CURVE_LINE, 0, "motion_work", NULL },
             { "taken by joints", "joint_work", NULL, CURVE_LINE, 1, "joint_work", NULL },
             { "taken by lines", "line_work", NULL, CURVE_LINE, 2, "line_work", NULL },
+            { "taken by porous zones", "porous_work", NULL, CURVE_LINE, 4, "porous_work", NULL },
             { "given by forces", "force_work", NULL, CURVE_LINE, 3, "force_work", NULL } } } } },
     { "work", "Work on solids, and where it goes", 1, {
         { "work, J", 0, 1, 0, 0, 0,

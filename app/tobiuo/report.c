@@ -137,6 +137,7 @@ static int read_run(report *r)
     if (code == 0) code = read_one(&r->probes, r->dir, "probes.csv");
     if (code == 0) code = read_one(&r->lines, r->dir, "lines.csv");
     if (code == 0) code = read_one(&r->joints, r->dir, "joints.csv");
+    if (code == 0) code = read_one(&r->zones, r->dir, "porous_zones.csv");
     if (code != 0) return code;
     const int time = table_column(&r->history, "time");
     const double end = r->history.rows ? table_number(&r->history, r->history.rows - 1, time) : 0;
@@ -159,6 +160,7 @@ static void free_run(report *r)
     table_free(&r->probes);
     table_free(&r->lines);
     table_free(&r->joints);
+    table_free(&r->zones);
     tobi_world_destroy(r->world);
     tobi_scene_free(r->loaded);
     json_decref(r->scene);

@@ -184,6 +184,7 @@ void write_tables(const report *r)
     write_bodies(r);
     write_held(r, &r->lines, TOBI_TABLE_LINES, "_tension", "Line");
     write_held(r, &r->joints, TOBI_TABLE_JOINTS, "_gap", "Joint");
+    write_held(r, &r->zones, TOBI_TABLE_POROUS, "_volume", "Porous zone");
     if (r->probes.columns > 0) write_probes(r);
     write_waves(r);
     write_columns(r, &all, TOBI_TABLE_HISTORY, "", "The whole");

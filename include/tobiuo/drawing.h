@@ -53,6 +53,8 @@ typedef struct tobi_looks {
     tobi_material_look *materials;
     tobi_body_look *bodies;            /* and lines behind them */
     tobi_inlet_look *inlets;
+    double (*zones)[2][3];             /* m, corners of porous zones, within the domain               */
+    int    zone_count;
 } tobi_looks;
 
 /* world: need not have begun. */

@@ -132,6 +132,12 @@ class World:
                       lambda k: self._of("tobi_line_info", lib.tobi_world_line, k))
 
     @property
+    def porous_zones(self):
+        """Force, power, volume ... of each porous zone (tobi_porous_info)."""
+        return _Named(_list_names(lib.tobi_world_porous, self._world, ffi.NULL),
+                      lambda k: self._of("tobi_porous_info", lib.tobi_world_porous, k))
+
+    @property
     def solids(self):
         """Mass, centre, velocity ... of each solid (tobi_solid_info)."""
         return _Named([self._solid(k)["name"] for k in range(lib.tobi_world_solid_count(self._world))], self._solid)

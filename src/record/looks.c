@@ -121,6 +121,20 @@ static tobi_status add_inlets(const tobi_world *w, tobi_looks *looks, tobi_error
     return TOBI_OK;
 }
 
+static tobi_status add_zones(const tobi_world *w, tobi_looks *looks, tobi_error *err)
+{
+    looks->zones = calloc((size_t)w->sim.porous_count + 1, sizeof *looks->zones);
+    if (!looks->zones) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    for (int k = 0; k < w->sim.porous_count; k++, looks->zone_count++)
+        for (int a = 0; a < looks->dimension; a++) {
+            const tobi_porous *z = &w->sim.porous[k];
+            const double from = w->system[0].box.lower[a];
+            looks->zones[k][0][a] = fmax(from + z->lower[a], looks->box_min[a]);
+            looks->zones[k][1][a] = fmin(from + z->upper[a], looks->box_max[a]);
+        }
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_looks(const tobi_world *w, tobi_looks *looks, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);
@@ -145,6 +159,7 @@ tobi_status tobi_world_looks(const tobi_world *w, tobi_looks *looks, tobi_error 
         status = add_materials(w, &w->system[k], looks, err);
     if (status == TOBI_OK) status = add_bodies(w, body, looks, err);
     if (status == TOBI_OK) status = add_inlets(w, looks, err);
+    if (status == TOBI_OK) status = add_zones(w, looks, err);
     if (status == TOBI_OK) add_lines(w, line, looks);
     else tobi_looks_free(looks);
     free(body);

@@ -287,6 +287,7 @@ void view_draw_background(canvas *c, const tobi_picture *f);
 void view_draw_floor(canvas *c, const tobi_picture *f);
 /* Lines behind what is opaque are hidden; over_water: only those in front of water are drawn. */
 void view_draw_box(canvas *c, const tobi_picture *f, bool over_water);
+void view_draw_zones(canvas *c, const tobi_picture *f);
 /* A line of view space, `width` pixels wide. */
 void view_draw_line(canvas *c, vec p, vec q, float width, vec color, float alpha, bool over_water);
 /* Lines of one colour, whose parts and crossings are no darker than the rest; false: no memory. */

@@ -46,6 +46,7 @@ void tobi_looks_free(tobi_looks *looks)
     free(looks->materials);
     free(looks->bodies);
     free(looks->inlets);
+    free(looks->zones);
     *looks = (tobi_looks){ 0 };
 }
 
@@ -360,6 +361,7 @@ static void set_picture(tobi_drawing *d)
     for (int a = 0; a < 3; a++)
         p->box_min[a] = s->box_min[a], p->box_max[a] = s->box_max[a], p->up[a] = -s->gravity[a];
     p->dimension = s->dimension;
+    p->zones = (const double (*)[2][3])s->zones, p->zone_count = s->zone_count;
     p->particle_count = d->count;
     p->positions = (const double (*)[3])d->positions;
     p->values = d->values;

@@ -245,16 +245,32 @@ void view_draw_floor(canvas *c, const tobi_picture *f)
     if (f->dimension == 3) draw_grid(c, f, axis, level, across);
 }
 
+/* lift: m towards the eye in 2-D. */
+static void draw_edges(canvas *c, int dimension, const double low[3], const double high[3], double lift,
+                       float width, vec color, bool over_water)
+{
+    const int corners = dimension == 2 ? 4 : 8;
+    for (int i = 0; i < corners; i++)
+        for (int k = 0; k < dimension; k++) {
+            if (i >> k & 1) continue;
+            double a[3] = { 0, 0, lift }, b[3] = { 0, 0, lift };
+            for (int m = 0; m < dimension; m++) a[m] = b[m] = i >> m & 1 ? high[m] : low[m];
+            b[k] = high[k];
+            draw_line(c, a, b, width, color, 0.75f, over_water);
+        }
+}
+
 void view_draw_box(canvas *c, const tobi_picture *f, bool over_water)
 {
-    vec color = { 0.05f, 0.07f, 0.10f };
-    int corners = f->dimension == 2 ? 4 : 8;
-    for (int i = 0; i < corners; i++)
-        for (int k = 0; k < f->dimension; k++) {
-            if (i >> k & 1) continue;
-            double a[3] = { 0, 0, 0 }, b[3] = { 0, 0, 0 };
-            for (int m = 0; m < f->dimension; m++) a[m] = b[m] = i >> m & 1 ? f->box_max[m] : f->box_min[m];
-            b[k] = f->box_max[k];
-            draw_line(c, a, b, 1.3f, color, 0.75f, over_water);
-        }
+    const vec color = { 0.05f, 0.07f, 0.10f };
+    draw_edges(c, f->dimension, f->box_min, f->box_max, 0, 1.3f, color, over_water);
+}
+
+/* Through water, and in 2-D over all. */
+void view_draw_zones(canvas *c, const tobi_picture *f)
+{
+    const vec color = { 0.45f, 0.13f, 0.02f };
+    for (int k = 0; k < f->zone_count; k++)
+        draw_edges(c, f->dimension, f->zones[k][0], f->zones[k][1], f->dimension == 2 ? 4*f->radius : 0, 2,
+                   color, false);
 }

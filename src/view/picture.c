@@ -510,6 +510,7 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     end_stage(s, STAGE_WATER);
     if (c->front) view_draw_box(c, f, true);
     if (s->glass.faces > 0) TOBI_TRY(view_paint_glass(c, &s->glass, water, true, film, err));
+    view_draw_zones(c, f);
     TOBI_TRY(draw_lines(s, err));
     if (f->streamlines > 0 && f->flow && !view_draw_streamlines(c, f)) return no_memory(f, err);
     if (f->velocities && !view_draw_arrows(c, f)) return no_memory(f, err);
