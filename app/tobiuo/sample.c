@@ -48,6 +48,8 @@ static void check_whole(sample_options *o, struct argp_state *state)
     if (o->fluid && o->solid) argp_error(state, "--fluid or --solid, not both");
     if (!(o->from <= o->until)) argp_error(state, "--from %g lies behind --until %g", o->from, o->until);
     if (o->cell > 0 && !o->box) argp_error(state, "--cell is for --box");
+    if (o->count > 0 && !o->line_count) argp_error(state, "--count is for --line");
+    if (o->count == 0) o->count = 50;
     if (!o->name) o->name = o->line_count ? "line" : o->points ? "points" : "box";
 }
 
@@ -379,7 +381,7 @@ const struct argp sample_argp = { .options = options, .parser = parse, .args_doc
 
 int tobiuo_sample(int argc, char **argv)
 {
-    sample_options o = { .format = "svg", .count = 50, .until = INFINITY };
+    sample_options o = { .format = "svg", .until = INFINITY };
     parse_arguments(&sample_argp, argc, argv, &o);
     sample_run s = { .options = &o, .name = o.name };
     const int code = make(&s);

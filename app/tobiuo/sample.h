@@ -10,7 +10,7 @@ typedef struct sample_options {
     const char *dir, *name, *points, *box, *fields, *body, *fluid, *solid, *format;
     const char *line[SAMPLE_LINES];
     int line_count, mean, threads, count;
-    double cell, from, until;          /* cell 0: the spacing; m, s */
+    double cell, from, until;          /* m, 0: the spacing; s */
 } sample_options;
 
 /* Where fields are asked for, as the user gives it. */

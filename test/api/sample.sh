@@ -182,6 +182,7 @@ expect 2 "which DIR?" sample --line "0,0 to 1,1"
 expect 2 "where? one of --line, --points, --box" sample still
 expect 2 "only one of --line, --points, --box" sample still --line "0,0 to 0.1,0.1" --box "0,0 to 0.1,0.1"
 expect 2 "--count: '1' is not a number from 2 to 1000000" sample still --line "0,0 to 0.1,0.1" --count 1
+expect 2 "--count is for --line" sample still --box "0,0 to 0.1,0.1" --count 5
 expect 2 "--cell is for --box" sample still --line "0,0 to 0.1,0.1" --cell 0.1
 expect 2 "--from 2 lies behind --until 1" sample still --line "0,0 to 0.1,0.1" --from 2 --until 1
 expect 2 "--fluid or --solid, not both" sample still --line "0,0 to 0.1,0.1" --fluid a --solid b
@@ -216,9 +217,22 @@ printf 'x,y\n' > empty.csv
 expect 1 "empty.csv: has no places" sample still --points empty.csv
 printf 'x,y\n0.1,0.1\n0.1,up\n' > words.csv
 expect 1 "words.csv: place 2 has no number in column 'y'" sample still --points words.csv
-sed -i '$d' framed/bodies.csv
+cp framed/bodies.csv whole.csv
+sed -i '$s/0.25,0.2/,0.2/' framed/bodies.csv
+expect 1 "framed/bodies.csv: the row of 'block' at 0.1" sample framed --with block --line "0.4,0.1 to 0.41,0.1"
+sed 's/^time,name/when,what/' whole.csv > framed/bodies.csv
+expect 1 "framed/bodies.csv: has no columns time and name" sample framed --with block --line "0.4,0.1 to 0.41,0.1"
+sed '$d' whole.csv > framed/bodies.csv
 expect 1 "framed/bodies.csv: has no row of 'block' at the output of 0.1 s" sample framed --with block \
     --line "0.4,0.1 to 0.41,0.1"
+expect 0 "" run still.json --out bare --quiet --set 'output.fields=["particle_id"]' --until 0.05
+expect 1 "the outputs of bare have no fields" sample bare --line "0,0 to 0.1,0.1"
+cp bare/fluid/fluid_000001.vtu framed/fluid/fluid_000001.vtu
+expect 1 "framed: the output of 0.05 s has no field 'velocity'" sample framed --line "0,0 to 0.1,0.1"
+check "and nothing is left of it" test -z "$(find framed -name '*.part')"
+expect 0 "" run three.json --out solid --quiet --set fluids=[] --set method=mlsmpm --set spacing=0.01
+expect 1 "solid is a run without a liquid; --solid NAME takes a solid" sample solid --line "0,0,0 to 0.1,0.1,0.1"
+expect 0 "" sample solid --line "0.45,0.1,0 to 0.45,0.1,0.4" --solid cube
 rm -r still/sample && : > still/sample
 expect 1 "still/sample is no folder" sample still --line "0,0 to 0.1,0.1"
 rm still/sample
