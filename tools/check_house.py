@@ -162,7 +162,7 @@ def check_page(root, path, errors):
 
 
 def check_pages(root, errors):
-    pages = sorted(root.glob("*.md")) + [p for f in ("docs", "scenes") for p in sorted((root / f).rglob("*.md"))]
+    pages = sorted(root.glob("*.md")) + [p for f in ("docs", "scenes", "test") for p in sorted((root / f).rglob("*.md"))]
     for path in pages:
         check_page(root, path, errors)
     numbers = [p.name[:4] for p in pages if p.parent.name == "decisions"]

@@ -214,6 +214,9 @@ TOBI_API int64_t tobi_world_count(const tobi_world *world, tobi_set set);
 /* Names of all fields by index, NULL past the end; components is 1, 3, 6 (xx, yy, zz, xy, yz, zx) or 9 (by
    rows). tobi_world_read refuses those that the method, or bodies, do not have. */
 TOBI_API const char *tobi_world_field_name(int field, int *components, const char **unit);
+/* The field that a name tells, whole or by a component: "velocity", "velocity_x", "stress_zx". component: its
+   number, -1 of the whole. NULL: there is no such field; component and unit may be NULL. */
+TOBI_API const char *tobi_world_find_field(const char *name, int *component, const char **unit);
 /* The names of the fields of a method by index, of all fields if it is unknown; NULL past the end. */
 TOBI_API const char *tobi_method_field(const char *method, int index);
 /* 1 if the particles of bodies have the field, by the number of tobi_world_field_name. */

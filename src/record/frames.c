@@ -17,8 +17,8 @@ static tobi_status add_view(tobi_run *run, const tobi_view_def *def, const char 
     *view = (tobi_record_view){ .def = *def, .follow = -1 };
     snprintf(view->name, sizeof view->name, "%s", def->name ? def->name : "frame");
     snprintf(name, sizeof name, "%s.picture.field", key);
-    if (def->field)
-        TOBI_TRY(tobi_record_find_field(run, name, def->field, strlen(def->field), &view->field, err));
+    const char *whole = tobi_world_find_field(def->field, NULL, NULL), *field = whole ? whole : def->field;
+    if (field) TOBI_TRY(tobi_record_find_field(run, name, field, strlen(field), &view->field, err));
     if (!def->follow) return TOBI_OK;
     view->follow = tobi_world_find_body(run->world, def->follow);
     return view->follow >= 0 ? TOBI_OK

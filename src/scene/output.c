@@ -127,7 +127,9 @@ static void check_view(const tobi_scene *scene, tobi_source *source, const tobi_
         memcmp(view->position, view->look_at, sizeof view->look_at) == 0)
         tobi_source_mistake(source, &angle, "needs a camera.position that is not camera.look_at");
     check_camera(source, view, &camera);
-    if (view->field) check_names(scene, source, &field, view->field);
+    int component = -1;
+    const char *whole = tobi_world_find_field(view->field, &component, NULL);
+    if (view->field) check_names(scene, source, &field, component < 0 ? view->field : whole);
     check_field_of(scene, source, &field_of, view->field_of);
     if (view->follow && !tobi_scene_find_body(scene, view->follow))
         tobi_source_mistake(source, &follow, "\"%s\" is no body of the scene", view->follow);

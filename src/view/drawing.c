@@ -193,11 +193,13 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
 {
     const tobi_moment *m = d->moment;
     const tobi_moment_field *velocity = find_field(m, "velocity");
-    const tobi_moment_field *field = d->view->field ? find_field(m, d->view->field) : velocity;
+    int component = -1;
+    const char *whole = tobi_world_find_field(d->view->field, &component, NULL);
+    const char *name = whole ? whole : d->view->field ? d->view->field : "velocity";
+    const tobi_moment_field *field = find_field(m, name);
     if (d->view->field && !field)
         return tobi_fail(err, TOBI_NOT_FOUND, "the output has no field '%s'; a run writes it with "
-                         "\"fields\": [\"usual\", \"%s\"] in output of the scene", d->view->field,
-                         d->view->field);
+                         "\"fields\": [\"usual\", \"%s\"] in output of the scene", name, name);
     const int arrows = (d->view->arrows || d->view->streamlines > 0) && velocity;
     TOBI_TRY(make_arrays(d, arrows, err));
     TOBI_TRY(make_skins(d, err));
@@ -213,7 +215,10 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
         if (d->skin) take_skin(d, i, to, material);
         d->group[to] = look->liquid ? -look->kind : piece >= 0 ? 1 + piece : -material;
         const int color = tobi_drawing_color(d, material, number_at(d->part, i, 0), piece);
-        d->values[to] = d->has_palette ? (float)color : (float)tobi_drawing_value(d->looks, field, i);
+        d->values[to] = d->has_palette ? (float)color
+                      : component >= 0 && component < field->components
+                      ? (float)field->values[i*field->components + component]
+                      : (float)tobi_drawing_value(d->looks, field, i);
         if (d->own) take_own_color(d, to, color);
     }
     return TOBI_OK;
@@ -265,9 +270,8 @@ static void take_bodies(tobi_drawing *d)
 /* Range and label of the colours of a field, or of the speed. */
 static void set_range(tobi_drawing *d)
 {
-    const char *name = d->view->field ? d->view->field : "speed", *known, *unit = "m/s";
+    const char *name = d->view->field ? d->view->field : "speed", *unit = "m/s";
     double low = d->view->min, high = d->view->max;
-    int components;
     if (!(low < high)) {
         low = INFINITY, high = -INFINITY;
         for (int64_t i = 0; i < d->count; i++) {
@@ -281,8 +285,7 @@ static void set_range(tobi_drawing *d)
     }
     d->picture.value_min = low;
     d->picture.value_max = high;
-    for (int k = 0; d->view->field && (known = tobi_world_field_name(k, &components, &unit)); k++)
-        if (strcmp(known, name) == 0) break;
+    if (d->view->field && !tobi_world_find_field(name, NULL, &unit)) unit = NULL;
     const int bare = !unit || strcmp(unit, "1") == 0;
     snprintf(d->label, sizeof d->label, bare ? "%s" : "%s [%s]", name, unit);
     d->picture.label = d->label;

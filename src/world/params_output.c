@@ -56,9 +56,9 @@ const tobi_param_table tobi_probe_table = {
              "their surface or each particle. With a field, natural is surface. Surfaces in 2-D are " \
              "regions." }, \
     { .key = "picture.field", TEXT, AT(type, in field), .unit = "name", \
-      .doc = "The field that colours the pictures, as in fields; of a vector its length, of the " \
-             "vorticity in 2-D that about z, counterclockwise positive. Without it a " \
-             "2-D scene of one liquid or solid, in no color of its own, shows the speed." }, \
+      .doc = "The field that colours the pictures, as in fields, or one component: velocity_x, stress_xy. " \
+             "Of a vector its length, of the vorticity in 2-D that about z, counterclockwise positive. " \
+             "Without it a 2-D scene of one liquid or solid, in no color of its own, shows the speed." }, \
     { .key = "picture.field_of", CHOICE("all|liquids|solids", 3), AT(type, in field_of), \
       .doc = "Which particles picture.field colours. Those of the other kind have their own colours, and " \
              "do not count for the range of the colours." }, \

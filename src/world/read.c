@@ -62,6 +62,33 @@ const char *tobi_world_field_name(int field, int *components, const char **unit)
     return o->name;
 }
 
+/* Behind the name of a field and "_"; -1: none of its components. */
+static int find_component(const char *letters, int components)
+{
+    static const char *const three[] = { "x", "y", "z" }, *const six[] = { "xx", "yy", "zz", "xy", "yz", "zx" },
+        *const nine[] = { "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz" };
+    const char *const *names = components == 3 ? three : components == 6 ? six : components == 9 ? nine : NULL;
+    for (int k = 0; names && k < components; k++)
+        if (strcmp(names[k], letters) == 0) return k;
+    return components == 6 && strcmp(letters, "xz") == 0 ? 5 : -1;
+}
+
+const char *tobi_world_find_field(const char *name, int *component, const char **unit)
+{
+    const tobi_output *o;
+    int part = -1, found = 0;
+    for (int k = 0; name && !found && (o = find_any(k)); k++) {
+        const size_t length = strlen(o->name);
+        if (strncmp(name, o->name, length) != 0) continue;
+        part = name[length] == '_' ? find_component(name + length + 1, o->components) : -1;
+        found = name[length] == '\0' || part >= 0;
+    }
+    if (!found) return NULL;
+    if (component) *component = part;
+    if (unit) *unit = o->unit;
+    return o->name;
+}
+
 int tobi_body_has_field(int field)
 {
     return field >= 0 && field < COMMON && strcmp(common[field].name, "pressure") != 0;

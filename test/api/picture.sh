@@ -100,6 +100,8 @@ expect 1 "there are no results of a run" picture .
 expect 1 "there is no output 9" picture dam --output 9
 expect 1 "the output has no field 'vorticity'; a run writes it with \"fields\": [\"usual\", \"vorticity\"] in output" \
     picture dam --set output.picture.field=vorticity
+expect 0 "" picture dam --set output.picture.field=velocity_x --out vx.png
+expect 1 "there is no field \"velocity_w\"" picture dam --set output.picture.field=velocity_w
 expect 1 "there is no field \"pressur\"" picture dam --set output.picture.field=pressur
 expect 1 "is \"solids\", but the scene has none" picture dam --set output.picture.field_of=solids
 expect 1 "\"nobody\" is no body of the scene" run dam.json --out no --set output.picture.follow=nobody

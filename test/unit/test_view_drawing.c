@@ -347,6 +347,38 @@ static void vorticity_has_a_sign_in_the_plane(void **state)
     memset(speed, 0, sizeof speed);
 }
 
+static void a_component_has_its_sign(void **state)
+{
+    (void)state;
+    tobi_view_def view = plain_view();
+    view.field = "velocity_z";
+    for (int i = 0; i < N; i++) material[i] = 0, speed[3*i] = 100, speed[3*i + 2] = i - 30;
+    tobi_drawing *d;
+    assert_int_equal(tobi_drawing_make(&looks, &moment, &view, &d, NULL), TOBI_OK);
+    const tobi_picture *p = tobi_drawing_picture(d);
+    assert_true(p->values[0] == -30 && p->value_min == -30 && p->value_max == N - 31);
+    assert_string_equal(p->label, "velocity_z [m/s]");
+    tobi_drawing_free(d);
+    memset(speed, 0, sizeof speed);
+}
+
+static void names_of_components(void **state)
+{
+    (void)state;
+    static const struct { const char *name, *whole; int component; } cases[] = {
+        { "velocity", "velocity", -1 }, { "velocity_y", "velocity", 1 }, { "stress_xy", "stress", 3 },
+        { "stress_zx", "stress", 5 }, { "stress_xz", "stress", 5 }, { "velocity_xx", NULL, -1 },
+        { "pressure_x", NULL, -1 }, { "velocity_", NULL, -1 }, { "", NULL, -1 }, { NULL, NULL, -1 },
+    };
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        int component = -1;
+        const char *unit = NULL, *whole = tobi_world_find_field(cases[k].name, &component, &unit);
+        assert_true((whole != NULL) == (cases[k].whole != NULL) && (unit != NULL) == (whole != NULL));
+        if (whole) assert_string_equal(whole, cases[k].whole);
+        assert_int_equal(component, cases[k].component);
+    }
+}
+
 static void wrong_calls_are_refused(void **state)
 {
     (void)state;
@@ -399,6 +431,7 @@ int main(void)
         cmocka_unit_test(solids_beside_liquids_have_colors), cmocka_unit_test(bodies_are_found_by_name),
         cmocka_unit_test(fields_of_one_kind), cmocka_unit_test(isolines_of_one_kind),
         cmocka_unit_test(tracks_are_read), cmocka_unit_test(vorticity_has_a_sign_in_the_plane),
+        cmocka_unit_test(a_component_has_its_sign), cmocka_unit_test(names_of_components),
         cmocka_unit_test(faces_of_pale_solids_stay_pale), cmocka_unit_test(wrong_calls_are_refused)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
