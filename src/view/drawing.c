@@ -280,7 +280,9 @@ static void set_range(tobi_drawing *d)
             high = fmax(high, d->values[i]);
         }
         if (!(low <= high)) low = high = 0;
-        if (is_turn(d->looks, name)) high = fmax(fabs(low), fabs(high)), low = -high;
+        const char *map = tobi_color_map_name(d->view->map);
+        const int parts = low < 0 && high > 0 && map && strcmp(map, "coolwarm") == 0;     /* at its middle */
+        if (parts || is_turn(d->looks, name)) high = fmax(fabs(low), fabs(high)), low = -high;
         if (low == high) high = low + fmax(1e-6*fabs(low), 1e-6);
     }
     d->picture.value_min = low;

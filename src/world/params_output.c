@@ -63,7 +63,8 @@ const tobi_param_table tobi_probe_table = {
       .doc = "Which particles picture.field colours. Those of the other kind have their own colours, and " \
              "do not count for the range of the colours." }, \
     { .key = "picture.map", CHOICE("viridis|magma|cividis|coolwarm|gray", 5), AT(type, in map), \
-      .doc = "The colours of picture.field, from its least value to its largest." }, \
+      .doc = "The colours of picture.field, from its least value to its largest; in the middle of coolwarm " \
+             "is 0 if there are both signs." }, \
     { .key = "picture.min", REAL, AT(type, in min), RANGE(-1e30, 1e30), \
       .unit = "that of the field", .doc = "Value at the lower end of the colours." }, \
     { .key = "picture.max", REAL, AT(type, in max), RANGE(-1e30, 1e30), \

@@ -65,9 +65,11 @@ const char *tobi_world_field_name(int field, int *components, const char **unit)
 /* Behind the name of a field and "_"; -1: none of its components. */
 static int find_component(const char *letters, int components)
 {
-    static const char *const three[] = { "x", "y", "z" }, *const six[] = { "xx", "yy", "zz", "xy", "yz", "zx" },
-        *const nine[] = { "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz" };
-    const char *const *names = components == 3 ? three : components == 6 ? six : components == 9 ? nine : NULL;
+    static const char *const three[] = { "x", "y", "z" };
+    static const char *const six[] = { "xx", "yy", "zz", "xy", "yz", "zx" };
+    static const char *const nine[] = { "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz" };
+    const char *const *names = components == 3 ? three : components == 6 ? six
+                             : components == 9 ? nine : NULL;
     for (int k = 0; names && k < components; k++)
         if (strcmp(names[k], letters) == 0) return k;
     return components == 6 && strcmp(letters, "xz") == 0 ? 5 : -1;

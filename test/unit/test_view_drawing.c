@@ -359,6 +359,11 @@ static void a_component_has_its_sign(void **state)
     assert_true(p->values[0] == -30 && p->value_min == -30 && p->value_max == N - 31);
     assert_string_equal(p->label, "velocity_z [m/s]");
     tobi_drawing_free(d);
+    while (strcmp(tobi_color_map_name(view.map), "coolwarm") != 0) view.map++;        /* whose middle is 0 */
+    assert_int_equal(tobi_drawing_make(&looks, &moment, &view, &d, NULL), TOBI_OK);
+    p = tobi_drawing_picture(d);
+    assert_true(p->value_max == fmax(30, N - 31) && p->value_min == -p->value_max);
+    tobi_drawing_free(d);
     memset(speed, 0, sizeof speed);
 }
 
