@@ -492,7 +492,7 @@ static void forces(tobi_system *s)
 {
     double clock = tobi_clock();
     apply_forces(s, s->state, &clock);
-    sph_porous_brake(s, NULL);
+    sph_porous_brake(s);
 }
 
 static tobi_status solve(tobi_system *s, tobi_error *err)

@@ -71,37 +71,28 @@ void sph_porous_begin(tobi_system *s)
         tobi_launch(&s->sim->exec, TOBI_HOST(begin_range, 0, 0), s, 0, s->particles.count, NULL);
 }
 
-typedef struct brake { const tobi_system *s; const float *fall; } brake;
-
 static void brake_range(const void *view, int64_t begin, int64_t end, double *totals)
 {
-    const brake *b = view;
-    const tobi_system *s = b->s;
+    const tobi_system *s = view;
     const sph_fields *f = sph_fields_of(&s->particles);
     (void)totals;
     for (int64_t i = begin; i < end; i++) {
         if (!(f->porous_before[i].w > 0)) continue;
         const tobi_porous *z = &s->sim->porous[(int)f->porous_before[i].w - 1];
         const double before[3] = { f->porous_before[i].x, f->porous_before[i].y, f->porous_before[i].z };
-        double part[3], more[3] = { 0 };
+        double part[3];
         float x[3], *u = &s->particles.velocity[i].x;
         const double push = s->dt*z->quadratic*take_part(z, before, part);
-        if (b->fall && s->sim->acceleration.acts)
-            tobi_acceleration_at(&s->sim->acceleration, &s->particles.position[i].x, more);
-        for (int a = 0; a < 3; a++) {
-            more[a] = b->fall ? b->fall[i]*s->dt*(s->gravity[a] + more[a]) : 0;
-            x[a] = (float)(u[a] + push*part[a] + more[a]);
-        }
+        for (int a = 0; a < 3; a++) x[a] = (float)(u[a] + push*part[a]);
         sph_porous_yield(f->porous[i], x);
-        for (int a = 0; a < s->box.dimension; a++) u[a] = (float)(x[a] - more[a]);
+        for (int a = 0; a < s->box.dimension; a++) u[a] = x[a];
     }
 }
 
-void sph_porous_brake(tobi_system *s, const float *fall)
+void sph_porous_brake(tobi_system *s)
 {
-    brake b = { s, fall };
     if (s->sim->porous_count > 0)
-        tobi_launch(&s->sim->exec, TOBI_HOST(brake_range, 0, 0), &b, 0, s->particles.count, NULL);
+        tobi_launch(&s->sim->exec, TOBI_HOST(brake_range, 0, 0), s, 0, s->particles.count, NULL);
 }
 
 typedef struct look { const tobi_system *s; int zone; } look;

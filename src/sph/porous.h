@@ -6,7 +6,7 @@
    it resists in this step. Nothing without zones, as in the next two. */
 void sph_porous_begin(tobi_system *s);
 /* Before the pressure, or after it where the method knows it beforehand: u becomes M (u + dt b |u0| u0), eq.
-   (2). fall: share of gravity that is braked here, which u does not have yet; NULL: u has all of it. */
-void sph_porous_brake(tobi_system *s, const float *fall);
+   (2). */
+void sph_porous_brake(tobi_system *s);
 /* After the pressure: force and power of each zone. */
 void sph_porous_measure(tobi_system *s);

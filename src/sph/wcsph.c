@@ -234,7 +234,7 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     tobi_couple_begin(s);
     sph_soft_begin(s, 0);
     apply_pressure(s, s->state, &clock);
-    sph_porous_brake(s, NULL);
+    sph_porous_brake(s);
     sph_porous_measure(s);
     return TOBI_OK;
 }

@@ -306,7 +306,7 @@ void isph_forces(tobi_system *s)
     if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     isph_bodies_remove_hydrostatic(s);
     sph_viscosity_solve(s, &without, m->kernel, expect, &clock);
-    sph_porous_brake(s, m->solver.view.gate);
+    sph_porous_brake(s);
     launch(s, m, m->kernel->isph_gravity, NULL);
     sph_openings_hold(s);
 }

@@ -286,6 +286,7 @@ typedef struct isph_rows_acc {
     lane ux, uy, uz, scale, bxx, byy, bzz, bxy, byz, bzx, sum, self, difference, divergence;
     lane px, py, pz;                 /* Pa/m: of liquid at rest, away from a free surface           */
     lane whole;                      /* of several fluids: the sum as of one                        */
+    isph_lack_porous lack;           /* with porous zones                                           */
     float bodies;                    /* of self, by bodies */
 } isph_rows_acc;
 
@@ -308,10 +309,10 @@ TOBI_FN void isph_rows_soft(const isph_view *v, int64_t i, isph_rows_acc *a)
     a->divergence = isph_first(divergence);
 }
 
-/* Pa/m, away from a free surface. Points of soft solids have a pressure difference of their own. */
-TOBI_FN void isph_rest(const isph_view *v, int64_t i, lane rest[3])
+/* Pa/m, of a share of gravity. Points of soft solids have a pressure difference of their own. */
+TOBI_FN void isph_rest(const isph_view *v, int64_t i, double share, lane rest[3])
 {
-    const float rho = isph_soft_last(v, i) >= 0 ? 0 : (float)((1 - v->gate[i])*v->density);
+    const float rho = isph_soft_last(v, i) >= 0 ? 0 : (float)(share*v->density);
     float g[3];
     isph_gravity_at(v, i, g);
     for (int c = 0; c < 3; c++) rest[c] = lane_set(rho*g[c]);
@@ -328,11 +329,12 @@ TOBI_FN void isph_rows_start(const isph_view *v, int64_t i, isph_rows_acc *a)
     a->sum = a->self = a->difference = a->divergence = lane_set(0);
     const int soft = isph_soft_last(v, i) >= 0;
     lane rest[3];
-    isph_rest(v, i, rest);
+    isph_rest(v, i, 1 - v->gate[i], rest);      /* away from a free surface */
     a->px = rest[0]; a->py = rest[1]; a->pz = rest[2];
     a->bodies = 0;
     if (soft) isph_rows_soft(v, i, a);
     a->whole = a->sum;
+    isph_begin_lack(&a->lack);
 }
 
 /* Into the entries of the list: images add to those of their pairs. */
@@ -365,8 +367,11 @@ TOBI_FN void isph_rows_pair(const isph_view *v, int64_t i, const tobi_neighbors 
         rest = rest*phase.face;
     }
     if (v->porous) {
+        const tobi_float4 g = v->concentration_gradient[i];
+        const lane share = isph_see_porous(v, i, n).share;
+        isph_add_lack(&c->lack, -a*(g.x*n->dx + g.y*n->dy + g.z*n->dz), share);
         if (!v->phase) c->whole += a;
-        a = a*isph_see_porous(v, i, n).share;
+        a = a*share;
     }
     c->difference += a*(image + rest);
     c->sum += a;
@@ -397,7 +402,8 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     }
     const tobi_float4 t = lane_sum4(a->sum, a->self, a->difference, a->divergence);
     const double loss = 1 - v->trace[i]/v->dimension;
-    const double whole = v->phase || v->porous ? lane_sum(a->whole) : t.x, open = isph_porous_mean(v, i);
+    const double whole = v->phase || v->porous ? lane_sum(a->whole) : t.x,
+                 open = isph_open(v, i, &a->lack);
     const double others = t.x - t.y - a->bodies;     /* rounding, of a drop that solids close in */
     const double excess = others > 1e-6*open*v->full
                         ? open*isph_excess(v, loss, whole, v->gate[i])/isph_density_of(v, i) : v->full;
@@ -471,14 +477,17 @@ TOBI_FN void isph_store_pressure(const isph_view *v, int64_t i, double *totals)
    surface the difference form stays: else the top row slides (decision 103). totals: |grad p|. */
 typedef struct isph_projection_acc {
     lane p, x, y, z;
-    lane rest[3];                    /* Pa/m: rho g, as in a row; with porous zones */
+    lane rest[3], fall[3];           /* Pa/m: rho g; what zones take of it, by pairs                */
+    isph_lack_porous lack;
 } isph_projection_acc;
 
 TOBI_FN void isph_projection_start(const isph_view *v, int64_t i, isph_projection_acc *a)
 {
     a->p = lane_set(v->pressure[i]);
     a->x = a->y = a->z = a->rest[0] = a->rest[1] = a->rest[2] = lane_set(0);
-    if (v->porous) isph_rest(v, i, a->rest);
+    a->fall[0] = a->fall[1] = a->fall[2] = lane_set(0);
+    isph_begin_lack(&a->lack);
+    if (v->porous) isph_rest(v, i, 1, a->rest);
     if (isph_soft_last(v, i) < 0) return;
     double n[3], s[3] = {0, 0, 0};
     isph_soft_normal(v, i, n);
@@ -486,6 +495,18 @@ TOBI_FN void isph_projection_start(const isph_view *v, int64_t i, isph_projectio
         for (int c = 0; c < 3; c++)
             s[c] -= isph_soft_difference(v, &v->soft[k], n)/v->slope*v->soft[k].gradient[c];
     a->x = isph_first(s[0]); a->y = isph_first(s[1]); a->z = isph_first(s[2]);
+}
+
+/* How the drag of a pair stands for that of what is missing. */
+TOBI_FN void isph_see_lack(const isph_view *v, int64_t i, const tobi_neighbors *n, lane f,
+                           const isph_pair_porous *porous, isph_lack_porous *lack)
+{
+    const tobi_float4 c = v->concentration_gradient[i];
+    const lane along = c.x*n->dx + c.y*n->dy + c.z*n->dz, weight = f*along*along;
+    float g[3];
+    isph_gravity_at(v, i, g);
+    isph_add_lack(lack, weight, porous->share);
+    isph_add_taken(v, i, n, porous->inverse, weight, g, lack->taken);
 }
 
 TOBI_FN void isph_projection_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,
@@ -500,8 +521,11 @@ TOBI_FN void isph_projection_pair(const isph_view *v, int64_t i, const tobi_neig
     a->x += q*n->dx; a->y += q*n->dy; a->z += q*n->dz;
     if (!v->porous) return;
     const isph_pair_porous porous = isph_see_porous(v, i, n);
-    const lane less = porous.inverse*(q + f*(a->rest[0]*n->dx + a->rest[1]*n->dy + a->rest[2]*n->dz));
+    const lane less = porous.inverse*q,
+               fall = porous.inverse*f*(a->rest[0]*n->dx + a->rest[1]*n->dy + a->rest[2]*n->dz);
     a->x -= less*porous.part[0]; a->y -= less*porous.part[1]; a->z -= less*porous.part[2];
+    for (int c = 0; c < 3; c++) a->fall[c] += fall*porous.part[c];
+    if (v->gate[i] > 0) isph_see_lack(v, i, n, f, &porous, &a->lack);
 }
 
 /* How surely the surface at i is flat: 0 to 1. */
@@ -522,10 +546,30 @@ TOBI_FN void isph_keep_along(double x[3], tobi_float4 n, double share)
     x[2] = (1 - share)*x[2] + along*n.z;
 }
 
+/* What zones take from gravity: by pairs, as from the pressure; at a free surface, across it, as they take it
+   from the pressure there. Drops have no pairs. */
+TOBI_FN void isph_brake_fall(const isph_view *v, int64_t i, const isph_projection_acc *a, double gradient[3])
+{
+    const double all = lane_sum(a->lack.all),
+                 own = all > 0 ? 0 : v->gate[i]*v->density/(1 + sph_porous_drag(v->porous[i]));
+    const tobi_float4 n = v->concentration_gradient[i];
+    const double n2 = (double)n.x*n.x + (double)n.y*n.y + (double)n.z*n.z;
+    double raw[3], taken[3], more = 0;
+    float g[3], part[3];
+    for (int c = 0; c < 3; c++) raw[c] = v->slope*lane_sum(a->fall[c]);
+    isph_apply(&v->inverse[i], raw, taken);
+    isph_gravity_at(v, i, g);
+    sph_porous_part(v->porous[i], g, part);
+    for (int c = 0; c < 3 && all > 0; c++)
+        more += v->gate[i]*(v->density*lane_sum(a->lack.taken[c])/all - taken[c])*(&n.x)[c];
+    for (int c = 0; c < v->dimension; c++)
+        gradient[c] += taken[c] + more/(n2 + 1e-30)*(&n.x)[c] + own*part[c];
+}
+
 TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projection_acc *a, double *totals)
 {
     const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0));
-    const double own = isph_porous_mean(v, i)*v->pressure[i]/isph_density_of(v, i),
+    const double own = isph_open(v, i, &a->lack)*v->pressure[i]/isph_density_of(v, i),
                  mean = 2*v->gate[i]*v->surface_force*own,
                  k = -v->slope;
     double x[3] = {k*s.x, k*s.y, k*s.z};
@@ -540,6 +584,7 @@ TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projecti
         lack[c] = v->gate[i]*(x[c] - g[c]) + mean*(&v->concentration_gradient[i].x)[c];
     isph_keep_along(lack, v->concentration_gradient[i], isph_flatness(v, i));
     for (int c = 0; c < 3; c++) g[c] += lack[c];
+    if (v->porous) isph_brake_fall(v, i, a, g);
     totals[0] += sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
     for (int c = 0; c < v->dimension; c++) (&v->velocity[i].x)[c] -= (float)(v->dt/v->density*g[c]);
 }

@@ -42,8 +42,41 @@ TOBI_FN isph_pair_porous isph_see_porous(const isph_view *v, int64_t i, const to
     return p;
 }
 
-/* The mean of M of i over all directions. */
-TOBI_FN float isph_porous_mean(const isph_view *v, int64_t i)
+/* Adds to out the part of x, the same for all pairs, that the drag of each takes, times weight. */
+TOBI_FN void isph_add_taken(const isph_view *v, int64_t i, const tobi_neighbors *n, lane inverse, lane weight,
+                            const float x[3], lane out[3])
 {
-    return v->porous ? sph_porous_mean(v->porous[i], v->dimension) : 1;
+    const tobi_float4 own = v->porous[i];
+    const lane zero = lane_set(0), k = 0.5f*weight*inverse;
+    float part[3];
+    lane s[3], w;
+    sph_porous_part(own, x, part);
+    lane_load_float4(v->porous, n->j, &s[0], &s[1], &s[2], &w);
+    const lane sign = lane_where_less(zero, w, lane_set(-1), lane_set(1)),
+               along = sign*(s[0]*x[0] + s[1]*x[1] + s[2]*x[2]);
+    for (int c = 0; c < 3; c++) out[c] += k*(w*x[c] + along*s[c] + part[c]);
+}
+
+/* Along the lack of neighbours at a free surface: sums over pairs, which have as much drag as what is missing
+   opposite. */
+typedef struct isph_lack_porous { lane all, open, taken[3]; } isph_lack_porous;
+
+TOBI_FN void isph_begin_lack(isph_lack_porous *l)
+{
+    l->all = l->open = l->taken[0] = l->taken[1] = l->taken[2] = lane_set(0);
+}
+
+TOBI_FN void isph_add_lack(isph_lack_porous *l, lane weight, lane share)
+{
+    l->all += weight;
+    l->open += weight*share;
+}
+
+/* 1: what is open of it; of none that of the particle. */
+TOBI_FN double isph_open(const isph_view *v, int64_t i, const isph_lack_porous *l)
+{
+    const double all = v->porous ? lane_sum(l->all) : 0, open = v->porous ? lane_sum(l->open) : 0;
+    if (!v->porous) return 1;
+    if (!(all > 0 && open > 0)) return sph_porous_mean(v->porous[i], v->dimension);
+    return open < all ? open/all : 1;
 }
