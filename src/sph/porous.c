@@ -21,14 +21,14 @@ static const tobi_porous *find_zone(const tobi_system *s, const double *x, int *
 /* P u, into out; returns its size. */
 static double take_part(const tobi_porous *z, const double u[3], double out[3])
 {
-    double along = 0, size = 0;
+    double along = 0, size2 = 0;
     for (int a = 0; a < 3; a++) along += z->direction[a]*u[a];
     for (int a = 0; a < 3; a++) {
         const double part = along*z->direction[a];
         out[a] = z->kind == TOBI_POROUS_ALL ? u[a] : z->kind == TOBI_POROUS_ALONG ? part : u[a] - part;
-        size = hypot(size, out[a]);
+        size2 += out[a]*out[a];
     }
-    return size;
+    return sqrt(size2);
 }
 
 static double find_linear(const tobi_system *s, const tobi_porous *z, int64_t i)

@@ -1,0 +1,53 @@
+#!/bin/bash
+# porous zones of a scene: their table, the same bits after a resume, the balance of energy, messages.
+# usage: porous.sh PROGRAM      works in a fresh folder that it removes; last line: "N passed, N failed"
+set -uo pipefail
+. "$(dirname "$0")/checks.sh" "$1"
+
+cat > channel.json <<'END'
+{ "dimension": 2, "method": "isph", "domain": { "min": [0, 0], "max": [1, 0.2], "walls": { "x": "periodic" } },
+  "gravity": [0, 0], "spacing": 0.025, "end_time": 0.2,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.2] }, "velocity": [1, 0] } ] } ],
+  "porous_zones": [ { "name": "kelp", "box": { "min": [0, 0], "max": [0.5, 0.2] }, "direction": [0, 1],
+                      "stems": { "number": 400, "diameter": 0.01 } },
+                    { "name": "mound", "box": { "min": [0.5, 0], "max": [1, 0.2] },
+                      "stones": { "size": 0.1, "porosity": 0.5 } } ],
+  "output": { "interval": 0.05, "probe_interval": 0.01, "frames": true } }
+END
+for method in isph dfsph wcsph; do
+    expect 0 "" run channel.json --out whole_$method --quiet --set method=$method --threads 1
+    expect 0 "" run channel.json --out parts_$method --quiet --set method=$method --threads 1 --until 0.1
+    expect 0 "" resume parts_$method --quiet --threads 2 --until 0.2
+    check "$method: the same table after a resume" cmp whole_$method/porous_zones.csv parts_$method/porous_zones.csv
+    check "$method: and the same work" cmp whole_$method/history.csv parts_$method/history.csv
+    check "$method: the work of both zones is the energy lost" $python -c "
+import csv
+rows = list(csv.DictReader(open('whole_$method/history.csv')))
+zones = list(csv.DictReader(open('whole_$method/porous_zones.csv')))[-1]
+lost = float(rows[0]['kinetic_energy']) - float(rows[-1]['kinetic_energy'])
+both = float(zones['kelp_work [J per m]']) + float(zones['mound_work [J per m]'])
+total = float(rows[-1]['porous_work'])
+raise SystemExit(not (abs(both/total - 1) < 1e-6 and abs(lost/total - 1) < 0.02 and lost > 20))"
+done
+check "a table of forces, power, work and volume" test "$(head -1 whole_isph/porous_zones.csv | cut -d, -f1-7)" = \
+    "time [s],kelp_force_x [N per m],kelp_force_y [N per m],kelp_force_z [N per m],kelp_power [W per m],kelp_work [J per m],kelp_volume [m2]"
+check "resolved.json has the zones" grep -q '"porosity": 0.5' whole_isph/resolved.json
+expect 0 "" run whole_isph/resolved.json --out again --quiet --threads 1
+check "and runs alike" cmp whole_isph/porous_zones.csv again/porous_zones.csv
+expect 0 "" report whole_isph
+check "the report has each zone" grep -q "Porous zone kelp" whole_isph/report.html
+expect 0 "" check channel.json
+check "check tells what resists" grep -q "porous zone      kelp: 0 1/s, 2 1/m across (0, 1, 0)" out.txt
+check "and what a zone of stones is not" grep -q "has stones of a porosity of 0.5" out.txt
+
+refuse() { local text=$1; shift; expect 1 "$text" check channel.json --set "$@"; }
+refuse "has more than one of stones, stems, screen and resistance" porous_zones.kelp.screen.loss=1
+refuse "stones.porosity" porous_zones.mound.stones.porosity=1
+refuse "outside of the domain" porous_zones.kelp.box.min=[3,0] --set porous_zones.kelp.box.max=[4,1]
+refuse "a direction is of stems" porous_zones.mound.direction=[1,0]
+expect 0 "" sweep channel.json --set porous_zones.kelp.stems.number=200,400 --set output.frames=false --until 0.05 --out s
+check "a sweep has the largest force" grep -q ",max kelp_force_x \[N per m\]" s/sweep.csv
+expect 0 "" describe zones
+check "describe names the columns" grep -q "^  volume " out.txt
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
