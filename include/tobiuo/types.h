@@ -220,6 +220,12 @@ typedef struct tobi_body_def {
     double plate_length, plate_width, plate_thickness;
     double knife_edge[3], knife_direction[3], knife_along[3];        /* middle; from back to edge; of it */
     double knife_length, knife_height, knife_thickness, knife_angle; /* m; degrees between its faces     */
+    const char *outline_points; /* "0,0 5,0.25 5,0", m, corners of a polygon; NULL = those of the file */
+    const char *outline_file;   /* path: CSV of such corners; both NULL = no outline                 */
+    int    outline_axis;        /* of the extrusion in 3-D: 0 y (points are x, z), 1 z (x, y), 2 x (y, z) */
+    double outline_from, outline_to;    /* m along that axis                                         */
+    double outline_base;        /* m: points are the upper side of what reaches down to it; TOBI_NO_PLACE
+                                   = a closed polygon                                                */
     double scale[3];            /* 1, per axis, about the mesh's own origin, first                   */
     double rotation_axis[3];    /* direction; second                                                 */
     double rotation_angle;      /* degrees                                                           */

@@ -2,6 +2,7 @@
    places. Drawback: types of the table are all that JSON can say. */
 #define _GNU_SOURCE 1
 #include "scene/bind.h"
+#include "scene/points.h"
 #include "scene/describe/describe.h"
 #include "scene/spelling.h"
 #include "tobiuo/scene.h"
@@ -320,6 +321,11 @@ static void bind_text(const slot *s)
 {
     const char *given = json_string_value(s->value), *kept = given;
     int is_path = strcmp(s->row->unit, "path") == 0, is_list = strcmp(s->row->unit, "names") == 0;
+    if (strcmp(s->row->unit, "points") == 0) {
+        kept = tobi_texts_keep(s->binder->texts, tobi_points_read(s->binder->source, s->place, s->value));
+        if (kept) memcpy(s->member, &kept, sizeof kept);
+        return;
+    }
     int is_free = strcmp(s->row->unit, "text") == 0, is_either = strcmp(s->row->unit, "name or names") == 0;
     if (!given && !((is_list || is_either) && json_is_array(s->value))) {
         tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s",

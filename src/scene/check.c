@@ -215,7 +215,7 @@ static void check_solids(const tobi_scene *scene, tobi_source *source)
 }
 
 static const char *const body_shapes[] = { "mesh", "box", "sphere", "cylinder", "capsule", "plate",
-                                          "knife" };
+                                          "knife", "outline" };
 
 /* Which shapes an entry of bodies gives: how many, and the last. */
 static int count_shapes(json_t *value, const char **last)
@@ -243,6 +243,18 @@ static void check_body_box(const tobi_scene *scene, tobi_source *source, int bod
                                 def->box_min[a], def->box_max[a], axis_name[a]);
 }
 
+static void check_outline(const tobi_scene *scene, tobi_source *source, int body, const tobi_place *outline)
+{
+    const tobi_body_def *def = &scene->bodies[body].def;
+    tobi_check_file(source, &(tobi_place){ outline, "file", 0 }, def->outline_file);
+    if (!def->outline_points == !def->outline_file)
+        tobi_source_mistake(source, outline, "must have points or a file; it has %s",
+                            def->outline_file ? "both" : "neither");
+    if (scene->world.dimension == 3 && !(def->outline_to > def->outline_from))
+        tobi_source_mistake(source, outline, "goes from %.10g to %.10g m along its axis; to must be greater "
+                            "than from", def->outline_from, def->outline_to);
+}
+
 /* One shape, with what makes it one. */
 static void check_shape(const tobi_scene *scene, tobi_source *source, int body, const tobi_place *entry)
 {
@@ -251,14 +263,15 @@ static void check_shape(const tobi_scene *scene, tobi_source *source, int body, 
     const int count = count_shapes(value, &shape);
     if (!json_is_object(value)) return;
     if (count != 1) {
-        tobi_source_mistake(source, entry, "must have one of mesh, box, sphere, cylinder, capsule, plate and "
-                            "knife; it has %s", count ? "several" : "none");
+        tobi_source_mistake(source, entry, "must have one of mesh, box, sphere, cylinder, capsule, plate, "
+                            "knife and outline; it has %s", count ? "several" : "none");
         return;
     }
     const int flat = strcmp(shape, "plate") == 0 || strcmp(shape, "knife") == 0;
     const char *size = flat ? "thickness" : "radius";
     tobi_place place = { entry, shape, 0 };
     if (strcmp(shape, "box") == 0) check_body_box(scene, source, body, entry);
+    else if (strcmp(shape, "outline") == 0) check_outline(scene, source, body, &place);
     else if (strcmp(shape, "mesh") != 0 && !json_object_get(json_object_get(value, shape), size))
         tobi_source_mistake(source, &place, "must have a %s", size);
 }

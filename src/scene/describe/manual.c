@@ -176,6 +176,7 @@ const char *tobi_manual_type(const tobi_param *row)
     case TOBI_PARAM_CHOICE: return "word";
     default:
         return strcmp(row->unit, "names") == 0           ? "list of names"
+               : strcmp(row->unit, "points") == 0        ? "list of points"
                : strcmp(row->unit, "name or names") == 0 ? "name or list of names"
                                                          : row->unit;
     }

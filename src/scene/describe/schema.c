@@ -120,6 +120,18 @@ static json_t *make_name(void)
     return schema;
 }
 
+/* At least three pairs of numbers, or two above a base. */
+static json_t *make_points(void)
+{
+    json_t *pair = make_type("array"), *list = make_type("array");
+    json_object_set_new(pair, "items", make_type("number"));
+    json_object_set_new(pair, "minItems", json_integer(2));
+    json_object_set_new(pair, "maxItems", json_integer(2));
+    json_object_set_new(list, "items", pair);
+    json_object_set_new(list, "minItems", json_integer(2));
+    return list;
+}
+
 static json_t *make_names(void)
 {
     json_t *list = make_type("array");
@@ -132,6 +144,7 @@ static json_t *make_names(void)
 static json_t *make_text(const tobi_param *row)
 {
     if (strcmp(row->unit, "method") == 0) return make_methods();
+    if (strcmp(row->unit, "points") == 0) return make_points();
     if (strcmp(row->unit, "names") == 0) return make_fields();
     if (strcmp(row->unit, "name or names") == 0) return make_either(make_name(), make_names());
     if (strcmp(row->unit, "path") != 0 && strcmp(row->unit, "text") != 0) return make_name();
@@ -271,11 +284,12 @@ static void require_region(json_t *schema)
         json_array_append_new(shapes, json_pack("{s[s]}", "required", "sphere"));
     }
     static const char *const more[][2] = { { "cylinder", "radius" }, { "capsule", "radius" },
-                                           { "plate", "thickness" }, { "knife", "thickness" } };
+                                           { "plate", "thickness" }, { "knife", "thickness" },
+                                           { "outline", NULL } };
     for (size_t k = 0; k < sizeof more/sizeof *more; k++) {
         json_t *shape = json_object_get(properties, more[k][0]);
         if (!shape) continue;
-        require(shape, more[k][1]);
+        if (more[k][1]) require(shape, more[k][1]);
         json_array_append_new(shapes, json_pack("{s[s]}", "required", more[k][0]));
     }
     if (json_object_get(properties, "level"))

@@ -1,0 +1,9 @@
+/* Points of a plane: lists of pairs in a scene, texts as "0,0 5,0.25" in a definition. */
+#pragma once
+#include "scene/source.h"
+#include <jansson.h>
+
+/* The text, owned by the caller; NULL after a mistake, or without memory. */
+char *tobi_points_read(tobi_source *source, const tobi_place *place, json_t *value);
+/* A new list; NULL without memory. */
+json_t *tobi_points_write(const char *text);
