@@ -1,151 +1,223 @@
-/* Where a body's outline says that nothing lies between, no line of sight meets the mesh: at places and
-   points without order, in poses without order. */
-#include "calls.h"
-#include "rigid_rig.h"
+/* Bodies by an outline: area and centre against the formula of the polygon, in 2-D and 3-D, of any sense of
+   turn; what is refused. */
+#include "tobiuo/scene.h"
+#include "tobiuo/tobiuo.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
-#define LIFT 1e-3
-enum { PLACES = 400, POSES = 3 };
-
-static double random_unit(uint64_t *seed)
+static tobi_world *make_world(int dimension)
 {
-    *seed = *seed*6364136223846793005u + 1442695040888963407u;
-    return (double)(*seed >> 11)/9007199254740992.0;
+    tobi_error err;
+    tobi_world *world;
+    tobi_world_def w = tobi_default_world_def();
+    w.dimension = dimension;
+    w.spacing = 0.05;
+    for (int a = 0; a < dimension; a++) w.domain_max[a] = 2;
+    w.gravity[2] = 0;
+    w.gravity[dimension - 1] = -9.81;
+    if (tobi_world_create(&w, NULL, &world, &err) != TOBI_OK) fail_msg("%s", err.text);
+    return world;
 }
 
-/* Around the body, at most two away from its box. */
-static void random_place(const tobi_body *b, uint64_t *seed, double x[3])
+static tobi_body_def of(const char *points)
 {
-    double low[3], high[3];
-    tobi_bvh_box(b->bvh, low, high);
-    for (int a = 0; a < 3; a++) x[a] = low[a] - 2 + (high[a] - low[a] + 4)*random_unit(seed);
+    tobi_body_def b = tobi_default_body_def();
+    b.name = "bed";
+    b.outline_points = points;
+    b.outline_from = 0.5, b.outline_to = 1.25;
+    return b;
 }
 
-static void turn(tobi_body *b, uint64_t *seed)
+/* A star whose n corners lie on two circles about (1, 1): concave; its area. */
+static double write_star(char *text, size_t size, int n, int backwards)
 {
-    double size = 0, *q = b->rigid.orientation;
-    tobi_error err = { 0 };
-    for (int a = 0; a < 4; a++) {
-        q[a] = random_unit(seed) - 0.5;
-        size += q[a]*q[a];
+    size_t used = 0;
+    for (int k = 0; k < n; k++) {
+        const double angle = 2*M_PI*(backwards ? n - k : k)/n, r = k%2 ? 0.8 : 0.3;
+        used += (size_t)snprintf(text + used, size - used, "%s%.17g,%.17g", k ? " " : "", 1 + r*cos(angle),
+                                 1 + r*sin(angle));
     }
-    for (int a = 0; a < 4; a++) q[a] /= sqrt(size);
-    assert_int_equal(tobi_body_place(b, 0, &err), TOBI_OK);
+    return 0.5*n*0.8*0.3*sin(2*M_PI/n);
 }
 
-/* Points that are outermost see all that faces them; returns how many were asked. */
-static int check_points(const tobi_body *b, const double x[3])
+static void expect(int dimension, int axis, const char *points, double area, double u, double v)
 {
-    int asked = 0;
-    for (int64_t k = 0; k < b->point_count; k++) {
-        double r[3], to[3];
-        vec3_sub(r, x, b->point[k]);
-        if (!b->outermost[k] || vec3_dot(r, b->normal[k]) < LIFT) continue;
-        vec3_add_scaled(to, b->point[k], LIFT, b->normal[k]);
-        assert_false(tobi_bvh_segment_hits(b->bvh, x, to));
-        asked++;
-    }
-    return asked;
+    static const int plane[3][2] = { { 0, 2 }, { 0, 1 }, { 1, 2 } }, along[3] = { 1, 2, 0 };
+    tobi_error err;
+    tobi_body_info info;
+    tobi_world *world = make_world(dimension);
+    tobi_body_def b = of(points);
+    b.outline_axis = axis;
+    if (tobi_world_add_body(world, &b, &err) != TOBI_OK) fail_msg("%s", err.text);
+    assert_int_equal(tobi_world_body(world, 0, &info), TOBI_OK);
+    const double length = dimension == 2 ? 1 : 0.75;
+    const int *p = dimension == 2 ? plane[1] : plane[axis];
+    assert_true(fabs(info.volume/(area*length) - 1) < 1e-9);
+    assert_true(fabs(info.position[p[0]] - u) < 1e-9 && fabs(info.position[p[1]] - v) < 1e-9);
+    if (dimension == 3) assert_true(fabs(info.position[along[axis]] - 0.875) < 1e-9);
+    tobi_world_destroy(world);
 }
 
-/* Above the plane across the way from the nearest point to x, all see x. */
-static int check_convex(const tobi_body *b, const double x[3], uint64_t *seed)
+static void polygons_have_their_area(void **state)
 {
-    tobi_bvh_hit hit;
-    double y[3], way[3], from_foot[3];
-    if (!b->convex || !tobi_bvh_closest(b->bvh, x, INFINITY, &hit) || hit.signed_distance < 0.01) return 0;
-    random_place(b, seed, y);
-    vec3_sub(way, x, hit.point);
-    vec3_sub(from_foot, y, hit.point);
-    if (vec3_dot(way, from_foot) < 0.01*hit.distance) return 0;
-    assert_false(tobi_bvh_segment_hits(b->bvh, x, y));
-    return 1;
-}
-
-static void check(tobi_body *b, int *points, int *places)
-{
-    uint64_t seed = 1;
-    *points = *places = 0;
-    for (int pose = 0; pose < POSES; pose++) {
-        for (int k = 0; k < PLACES; k++) {
-            double x[3];
-            random_place(b, &seed, x);
-            *points += check_points(b, x);
-            *places += check_convex(b, x, &seed);
+    (void)state;
+    char star[20000];
+    for (int dimension = 2; dimension <= 3; dimension++)
+        for (int axis = 0; axis < 3; axis++) {
+            expect(dimension, axis, "0.5,0 1.5,0 0.5,0.6", 0.3, 0.5 + 1/3.0, 0.2);
+            expect(dimension, axis, "0.5,0.6 1.5,0 0.5,0", 0.3, 0.5 + 1/3.0, 0.2);
+            /* an L, with points on straight sides, a repeated one, a spike and the first again at the end */
+            expect(dimension, axis,
+                   "0,0 0.5,0 1,0 1,0 1,0.5 0.5,0.5 0.5,0.75 0.5,1 0.5,1.5 0.5,1 0,1 0,0", 0.75,
+                   (0.5*0.5 + 0.25*0.25)/0.75, (0.5*0.25 + 0.25*0.75)/0.75);
+            for (int n = 6; n <= 400; n *= 4) {
+                const double area = write_star(star, sizeof star, n, axis == 1);
+                expect(dimension, axis, star, area, 1, 1);
+            }
         }
-        turn(b, &seed);
+}
+
+/* A comb: every corner of its teeth but two is no ear at first. */
+static void a_comb_has_its_area(void **state)
+{
+    (void)state;
+    char text[4000] = "0,0 1.95,0";
+    for (int k = 19; k >= 0; k--)
+        snprintf(text + strlen(text), sizeof text - strlen(text), " %.17g,1 %.17g,1 %.17g,0.1 %.17g,0.1",
+                 0.1*k + 0.05, 0.1*k, 0.1*k, k > 0 ? 0.1*k - 0.05 : 0.0);
+    /* 1.95 by 0.1, and 20 teeth of 0.05 by 0.9 */
+    const double area = 1.95*0.1 + 20*0.05*0.9;
+    const double v = (1.95*0.1*0.05 + 20*0.05*0.9*0.55)/area;
+    expect(2, 0, text, area, 0.975, v);
+    expect(3, 2, text, area, 0.975, v);
+}
+
+static void a_line_fills_down_to_its_base(void **state)
+{
+    (void)state;
+    tobi_error err;
+    tobi_body_info info;
+    char path[] = "/tmp/outlineXXXXXX";
+    FILE *file = fdopen(mkstemp(path), "w");
+    fputs("\xef\xbb\xbfstation;z [cm];x [mm]\n# surveyed\n1;0;500\n2; 20 ;1000\n\n3;\"60\";2000\n", file);
+    fclose(file);
+    for (int from_file = 0; from_file < 2; from_file++) {
+        tobi_world *world = make_world(3);
+        tobi_body_def b = of(from_file ? NULL : "0.5,0 1,0.2 2,0.6");
+        b.outline_file = from_file ? path : NULL;
+        b.outline_base = 0;
+        if (tobi_world_add_body(world, &b, &err) != TOBI_OK) fail_msg("%s", err.text);
+        assert_int_equal(tobi_world_body(world, 0, &info), TOBI_OK);
+        assert_true(fabs(info.volume/(0.75*(0.05 + 0.4)) - 1) < 1e-9);
+        tobi_world_destroy(world);
     }
+    remove(path);
 }
 
-static int64_t outermost(const tobi_body *b)
+static void refused(const char *points, double base, const char *why)
 {
-    int64_t sum = 0;
-    for (int64_t k = 0; k < b->point_count; k++) sum += b->outermost[k];
-    return sum;
+    tobi_error err;
+    tobi_world *world = make_world(3);
+    tobi_body_def b = of(points);
+    b.outline_base = base;
+    assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_INVALID);
+    if (!strstr(err.text, why)) fail_msg("\"%s\" lacks \"%s\"", err.text, why);
+    tobi_world_destroy(world);
 }
 
-static void sees_along_convex_bodies(void **state)
-{
-    (void)state;
-    static const double side[3] = { 2, 3, 1 }, middle[3] = { 10, 10, 10 }, none[3] = { 0, 0, 0 };
-    int points, places;
-    rig g;
-    rig_open(&g, 20, none);
-    tobi_body *box = rig_box(&g, rig_def(), side, middle);
-    assert_true(box->convex);
-    assert_int_equal(outermost(box), box->point_count);
-    check(box, &points, &places);
-    assert_true(points > 100*PLACES && places > PLACES/2);
-    tobi_body_def def = rig_def();
-    def.sphere_radius = 2;
-    for (int a = 0; a < 3; a++) def.sphere_centre[a] = 10;
-    tobi_body *ball = rig_add(&g, &def);
-    assert_true(ball->convex);
-    check(ball, &points, &places);
-    assert_true(places > PLACES/2);
-    rig_close(&g);
-}
-
-/* Surfaces of 0.8 spacings and less between two faces are thin; the rig's spacing is 1. */
-static void tells_thick_from_thin(void **state)
+static void wrong_outlines_are_refused(void **state)
 {
     (void)state;
-    static const double middle[3] = { 10, 10, 10 }, none[3] = { 0, 0, 0 };
-    static const double side[4][3] = { { 2, 3, 1 }, { 2, 3, 0.8 }, { 0.5, 3, 3 }, { 4, 4, 4 } };
-    rig g;
-    rig_open(&g, 20, none);
-    for (int k = 0; k < 4; k++) assert_int_equal(rig_box(&g, rig_def(), side[k], middle)->thick, k%3 == 0);
-    tobi_body_def def = rig_def();
-    def.sphere_radius = 1;
-    for (int a = 0; a < 3; a++) def.sphere_centre[a] = 10;
-    assert_true(rig_add(&g, &def)->thick);
-    rig_close(&g);
+    const double none = TOBI_NO_PLACE;
+    refused("0,0 1,0", none, "its outline has 2 points; at least 3 are needed");
+    refused("0,0 1,0 2,0", none, "its outline has no area");
+    refused("0,0 1,1 1,0 0,1", none,
+            "crosses itself: the side from (0, 0) to (1, 1) m meets that from (1, 0) to (0, 1) m");
+    refused("0,0 1,0 1,1 0.5,0 0,1", none, "crosses itself");
+    refused("0,0 1;0 1,1", none, "its outline: \"1;0 1,1\" is no point; points are like");
+    refused("0,0 1,0 nan,1", none, "is no point");
+    refused("0,0 1,0.2 1,0.4", 0, "with a base points go to the right, but (1, 0.4) m follows (1, 0.2) m");
+    refused("0,0.1 1,0.2", 0.15, "the point (0, 0.1) m lies below the base, 0.15 m");
+    refused("1,1", 0, "1 points; a line above a base has at least 2");
+    tobi_error err;
+    tobi_world *world = make_world(3);
+    tobi_body_def b = of("0,0 1,0 0,1");
+    b.outline_to = 0.5;
+    assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "goes from 0.5 to 0.5 m along y; to must be greater than from"));
+    b.outline_to = 1, b.outline_file = "bed.csv";
+    assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "has points and a file; it may have one"));
+    b.outline_file = NULL, b.sphere_radius = 0.1;
+    assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "a plate, a knife or an outline"));
+    tobi_world_destroy(world);
 }
 
-/* Of a ring the outer half is outermost at most. */
-static void asks_in_a_ring(void **state)
+static void too_many_points_are_refused(void **state)
 {
     (void)state;
-    static const double none[3] = { 0, 0, 0 };
-    int points, places;
-    rig g;
-    rig_open(&g, 20, none);
-    tobi_body_def def = rig_def();
-    def.mesh = TOBI_SOURCE_DIR "/test/meshes/torus.obj";
-    for (int a = 0; a < 3; a++) def.scale[a] = 4, def.translation[a] = 10;
-    tobi_body *b = rig_add(&g, &def);
-    assert_false(b->convex);
-    assert_true(outermost(b) > 0 && outermost(b) < b->point_count);
-    check(b, &points, &places);
-    assert_true(points > 0 && places == 0);
-    rig_close(&g);
+    char *text = malloc(70000*40);
+    for (int count = 5001; count <= 70000; count += 64999) {
+        size_t used = 0;
+        for (int k = 0; k < count; k++)
+            used += (size_t)sprintf(text + used, "%s%.9g,%.9g", k ? " " : "", 1 + 0.5*cos(2*M_PI*k/count),
+                                    1 + 0.5*sin(2*M_PI*k/count));
+        refused(text, TOBI_NO_PLACE, count == 5001 ? "has 5001 points; at most 5000 are allowed"
+                                                   : "more than 65536 points");
+    }
+    free(text);
+}
+
+static void wrong_tables_are_refused(void **state)
+{
+    (void)state;
+    static const struct { const char *table, *why; } cases[] = {
+        { "", "is empty" },
+        { "x,y\n0,0\n", "1: the first line must name columns x and z" },
+        { "x [ft],z\n0,0\n", "1: the unit of column x is not known; allowed are [m], [cm], [mm] or none" },
+        { "x,z,x\n0,0,0\n", "1: column x is there twice" },
+        { "x,z\n0,0\n1,high\n", "3: \"high\" is no finite number" },
+        { "x,z\n0\n", "2: the row has fewer columns than the first line" },
+    };
+    tobi_error err;
+    char path[] = "/tmp/outlineXXXXXX";
+    FILE *made = fdopen(mkstemp(path), "w");
+    fclose(made);
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        FILE *file = fopen(path, "w");
+        fputs(cases[k].table, file);
+        fclose(file);
+        tobi_world *world = make_world(3);
+        tobi_body_def b = of(NULL);
+        b.outline_file = path;
+        assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_INVALID);
+        if (!strstr(err.text, cases[k].why)) fail_msg("\"%s\" lacks \"%s\"", err.text, cases[k].why);
+        tobi_world_destroy(world);
+    }
+    remove(path);
+    tobi_world *world = make_world(3);
+    tobi_body_def b = of(NULL);
+    b.outline_file = path;
+    assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_NOT_FOUND);
+    b.outline_file = ".";         /* a folder */
+    assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_IO);
+    tobi_world_destroy(world);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sees_along_convex_bodies),
-        cmocka_unit_test(tells_thick_from_thin),
-        cmocka_unit_test(asks_in_a_ring),
+        cmocka_unit_test(polygons_have_their_area), cmocka_unit_test(a_comb_has_its_area),
+        cmocka_unit_test(a_line_fills_down_to_its_base), cmocka_unit_test(wrong_outlines_are_refused),
+        cmocka_unit_test(too_many_points_are_refused), cmocka_unit_test(wrong_tables_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

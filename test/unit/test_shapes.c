@@ -241,6 +241,20 @@ static void scenes_have_shapes(void **state)
     check_scene("\"sphere\": { \"centre\": [0.5, 0.5, 0.7] }", "bodies[0].sphere: must have a radius");
     check_scene("\"density\": 3", "bodies[0]: must have one of mesh, box, sphere, cylinder, capsule");
     check_scene("\"sphere\": { \"radius\": 1 }, \"plate\": { \"thickness\": 1 }", "it has several");
+    check_scene("\"outline\": { \"points\": [[0.1, 0.3], [0.9, 0.30000000000000004], [0.5, 1e-1]],\n"
+                "\"from\": 0.2, \"to\": 0.4 }", NULL);
+    check_scene("\"outline\": { \"points\": [[0.1, 0.3], [0.9, 0.4]], \"base\": 0,\n\"axis\": \"x\", "
+                "\"from\": 0.2, \"to\": 0.4 }", NULL);
+    check_scene("\"outline\": { \"from\": 0, \"to\": 1 }",
+                "outline: must have points or a file; it has neither");
+    check_scene("\"outline\": { \"points\": [[0, 0], [1, 0], [0, 1]] }",
+                "outline: goes from 0 to 0 m along its axis; to must be greater than from");
+    check_scene("\"outline\": { \"points\": 3, \"to\": 1 }",
+                "outline.points: must be a list of points, each a list of 2 numbers");
+    check_scene("\"outline\": { \"points\": [[0, 0], [1, 0, 2]], \"to\": 1 }",
+                "outline.points[1]: must be a point, a list of 2 numbers");
+    check_scene("\"outline\": { \"points\": [[0, 0], [1, 2e7]], \"to\": 1 }",
+                "outline.points[1][1]: is 20000000, allowed is -1e+07 to 1e+07 m");
 }
 
 int main(void)
