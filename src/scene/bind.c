@@ -322,8 +322,10 @@ static void bind_text(const slot *s)
     const char *given = json_string_value(s->value), *kept = given;
     int is_path = strcmp(s->row->unit, "path") == 0, is_list = strcmp(s->row->unit, "names") == 0;
     if (strcmp(s->row->unit, "points") == 0) {
-        kept = tobi_texts_keep(s->binder->texts, tobi_points_read(s->binder->source, s->place, s->value));
-        if (kept) memcpy(s->member, &kept, sizeof kept);
+        char *points;
+        if (!tobi_points_read(s->binder->source, s->place, s->value, &points)) return;
+        kept = tobi_texts_keep(s->binder->texts, points);
+        memcpy(s->member, &kept, sizeof kept);
         return;
     }
     int is_free = strcmp(s->row->unit, "text") == 0, is_either = strcmp(s->row->unit, "name or names") == 0;

@@ -246,10 +246,14 @@ static void check_body_box(const tobi_scene *scene, tobi_source *source, int bod
 static void check_outline(const tobi_scene *scene, tobi_source *source, int body, const tobi_place *outline)
 {
     const tobi_body_def *def = &scene->bodies[body].def;
+    json_t *value = json_array_get(json_object_get(scene->root, "bodies"), (size_t)body);
+    const json_t *given = json_object_get(value, "outline");
+    const int points = json_object_get(given, "points") != NULL;
+    const int file = json_object_get(given, "file") != NULL;
     tobi_check_file(source, &(tobi_place){ outline, "file", 0 }, def->outline_file);
-    if (!def->outline_points == !def->outline_file)
+    if (points == file)
         tobi_source_mistake(source, outline, "must have points or a file; it has %s",
-                            def->outline_file ? "both" : "neither");
+                            file ? "both" : "neither");
     if (scene->world.dimension == 3 && !(def->outline_to > def->outline_from))
         tobi_source_mistake(source, outline, "goes from %.10g to %.10g m along its axis; to must be greater "
                             "than from", def->outline_from, def->outline_to);

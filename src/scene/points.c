@@ -24,25 +24,25 @@ static int check_point(tobi_source *source, const tobi_place *place, const json_
     return 1;
 }
 
-char *tobi_points_read(tobi_source *source, const tobi_place *place, json_t *value)
+int tobi_points_read(tobi_source *source, const tobi_place *place, json_t *value, char **text)
 {
-    char *text = NULL;
     size_t length, i;
     json_t *point;
     double at[2];
     int good = json_array_size(value) > 0;
+    *text = NULL;
     if (!good) tobi_source_mistake(source, place, "must be a list of points, each a list of 2 numbers");
-    FILE *out = good ? open_memstream(&text, &length) : NULL;
+    FILE *out = good ? open_memstream(text, &length) : NULL;
     json_array_foreach(value, i, point) {
         tobi_place entry = { place, NULL, i };
         good &= check_point(source, &entry, point, at);
         if (out && good) fprintf(out, "%s%.17g,%.17g", i ? " " : "", at[0], at[1]);
     }
-    if (!out || fclose(out) != 0 || !good) {
-        free(text);
-        return NULL;
+    if ((!out || fclose(out) != 0 || !good) && *text) {
+        free(*text);
+        *text = NULL;
     }
-    return text;
+    return good;
 }
 
 json_t *tobi_points_write(const char *text)

@@ -3,7 +3,7 @@
 #include "scene/source.h"
 #include <jansson.h>
 
-/* The text, owned by the caller; NULL after a mistake, or without memory. */
-char *tobi_points_read(tobi_source *source, const tobi_place *place, json_t *value);
+/* 0 after a mistake. text: owned by the caller; NULL without memory. */
+int tobi_points_read(tobi_source *source, const tobi_place *place, json_t *value, char **text);
 /* A new list; NULL without memory. */
 json_t *tobi_points_write(const char *text);
