@@ -22,10 +22,15 @@ const family_option wave_options[] = {
     { "period", "s", 1.2, 0, 1e5, "of regular waves; 0: one solitary wave", 0 },
     { "ramp", "periods", 2, 0, 100, "in which the stroke of the piston grows from 0", 0 },
     { "beach", "wave lengths", 1, 0, 100, "of the damping zone at the far end; 0: none, a wall", 0 },
+    { "slope", "1", 0, 0, 1000, "N of a slope of 1 : N at the far end in place of the beach; 0: none", 0 },
     LENGTH("maker-at", 0.3, "where the water begins: the face of the piston at rest"), { 0 } };
 
-/* What follows from the choice. length, speed, group: of the waves, m, m/s, m/s; the others in m and s. */
-typedef struct plan { double length, speed, group, tank, beach, ramp, until; } plan;
+/* A slope ends so many wave heights above the still water, or at the height of the tank. */
+static const double RUN_UP = 4;
+
+/* What follows from the choice. length, speed, group: of the waves, m, m/s, m/s; the others in m and s.
+   beach: length of the damping zone; slope, top: length and height of the slope. */
+typedef struct plan { double length, speed, group, tank, beach, slope, top, ramp, until; } plan;
 
 /* Up to two digits, as somebody would draw it. */
 static double round_up(double x)
@@ -34,7 +39,7 @@ static double round_up(double x)
     return ceil(x/unit - 1e-9)*unit;
 }
 
-static double tidy(double x) { return floor(x*1000 + 0.5)/1000; }
+static double tidy(double x) { return floor(x*1e4 + 0.5)/1e4; }
 
 /* k h of omega^2 = g k tanh kh, by Newton's method. */
 static double wave_number_depth(double period, double depth)
@@ -45,6 +50,14 @@ static double wave_number_depth(double period, double depth)
     return kh;
 }
 
+static void plan_slope(const family_choice *c, plan *p)
+{
+    if (!(chosen(c, "slope") > 0)) return;
+    p->beach = 0;
+    p->top = fmin(chosen(c, "height"), chosen(c, "depth") + RUN_UP*chosen(c, "wave-height"));
+    p->slope = chosen(c, "slope")*p->top;
+}
+
 static plan plan_regular(const family_choice *c)
 {
     const double period = chosen(c, "period"), depth = chosen(c, "depth");
@@ -52,10 +65,11 @@ static plan plan_regular(const family_choice *c)
     plan p = { .length = length, .speed = length/period, .ramp = period*chosen(c, "ramp") };
     p.group = p.speed*(0.5 + kh/sinh(2*kh));
     if (chosen(c, "beach") > 0) p.beach = round_up(length*chosen(c, "beach"));
+    plan_slope(c, &p);
     p.tank = chosen(c, "length") > 0 ? chosen(c, "length")
-                                     : round_up(chosen(c, "maker-at") + ROOM*length + p.beach);
+                                     : round_up(chosen(c, "maker-at") + ROOM*length + p.beach + p.slope);
     p.until = chosen(c, "until");
-    const double way = p.tank - p.beach - chosen(c, "maker-at");
+    const double way = p.tank - p.beach - p.slope - chosen(c, "maker-at");
     if (!(p.until > 0)) p.until = period*ceil((p.ramp + way/p.group)/period + PASS);
     return p;
 }
@@ -66,7 +80,9 @@ static plan plan_solitary(const family_choice *c)
     const double depth = chosen(c, "depth"), height = chosen(c, "wave-height");
     const double kappa = sqrt(0.75*height/(depth*depth*depth)), speed = sqrt(G*(depth + height));
     plan p = { .length = 2*REACH/kappa, .speed = speed, .group = speed };
-    p.tank = chosen(c, "length") > 0 ? chosen(c, "length") : round_up(chosen(c, "maker-at") + p.length);
+    plan_slope(c, &p);
+    p.tank = chosen(c, "length") > 0 ? chosen(c, "length")
+                                     : round_up(chosen(c, "maker-at") + p.length + p.slope);
     p.until = chosen(c, "until");
     if (!(p.until > 0)) p.until = round_up((p.length/2 + 2*(p.tank - chosen(c, "maker-at")))/speed);
     return p;
@@ -85,8 +101,12 @@ const char *object_wave(const family_choice *c)
         return "--wave-height is more than 0.78 of --depth: such waves break";
     if (!(chosen(c, "period") > 0) && (is_given(c, "ramp") || is_given(c, "beach")))
         return "a solitary wave, --period 0, has neither --ramp nor --beach";
+    if (chosen(c, "slope") > 0 && is_given(c, "beach") && chosen(c, "beach") > 0)
+        return "the far end has --slope or --beach, not both";
     const plan p = make_plan(c);
     if (chosen(c, "maker-at") >= p.tank) return "the piston stands beyond the tank";
+    if (p.slope > 0 && chosen(c, "maker-at") + p.slope >= p.tank)
+        return "piston and slope fill the tank: give more --length, a smaller --slope, or no --length";
     return chosen(c, "maker-at") + p.beach >= p.tank
          ? "piston and beach fill the tank: give more --length, less --beach, or no --length" : NULL;
 }
@@ -109,7 +129,28 @@ static void put_piston(const family_choice *c, FILE *out, const plan *p, const d
                 height, chosen(c, "period"), second ? 2 : 1);
     else
         fprintf(out, "        \"solitary\": { \"height\": %.10g } // m above the still water\n", height);
-    fputs("      } } }\n  ],\n", out);
+    fputs("      } } }", out);
+    if (p->slope > 0) {
+        fprintf(out, ",\n    // points of its upper side, m; base: what the body reaches down to\n"
+                "    { \"name\": \"slope\",\n"
+                "      \"outline\": { \"points\": [[%.10g, 0], [%.10g, %.10g]], \"base\": 0",
+                p->tank - p->slope, p->tank, p->top);
+        if (c->dimension == 3) fprintf(out, ", \"from\": 0, \"to\": %.10g", size[1]);
+        fputs(" } }", out);
+    }
+    fputs("\n  ],\n", out);
+}
+
+/* Along the slope, half a spacing above it, from half of the depth on. */
+static void put_run_up(const family_choice *c, FILE *out, const plan *p, double y)
+{
+    const double n = chosen(c, "slope"), off = 0.5*chosen(c, "spacing")*sqrt(1 + 1/(n*n));
+    const double low = 0.5*chosen(c, "depth"), toe = p->tank - p->slope, high = 0.98*p->top - off;
+    fputs(",\n    { \"name\": \"runup\", \"kind\": \"run-up\", \"position\": ", out);
+    put_place(c, out, tidy(toe + n*low), y, tidy(low + off));
+    fputs(", \"end\": ", out);
+    put_place(c, out, tidy(toe + n*high), y, tidy(high + off));
+    fputs(" }", out);
 }
 
 static void put_beach(const family_choice *c, FILE *out, const plan *p, const double size[3])
@@ -128,11 +169,13 @@ static void put_beach(const family_choice *c, FILE *out, const plan *p, const do
 static void put_gauges(const family_choice *c, FILE *out, const plan *p, const double size[3])
 {
     static const double apart[] = { 0, 0.1, 0.25 };
-    const double at = chosen(c, "maker-at"), room = p->tank - p->beach - at;
+    const double at = chosen(c, "maker-at"), room = p->tank - p->beach - p->slope - at;
     const int regular = chosen(c, "period") > 0;
-    fprintf(out, "  // Sensors of the level, m above the floor, in probes.csv%s\n  \"probes\": [",
-            regular ? ". G2 and G3 stand 1/10 and 1/4\n  // of a wave length behind G1: such a row tells "
-            "waves that come back:\n  // tobiuo waves DIR --gauges G1,G2,G3" : "; wall: pressure, Pa.");
+    fprintf(out, "  // Sensors of the level, m above the floor, in probes.csv%s%s\n  \"probes\": [",
+            p->slope > 0 ? "; runup: how high water runs up, m"
+                         : p->beach > 0 ? "" : "; wall: pressure, Pa",
+            regular ? ".\n  // G2 and G3 stand 1/10 and 1/4 of a wave length behind G1: such a row tells "
+            "waves\n  // that come back: tobiuo waves DIR --gauges G1,G2,G3" : "");
     for (int k = 0; k < 3; k++) {
         const double x = regular ? at + room/2 + apart[k]*fmin(p->length, room) : at + (k + 1)*room/4;
         char name[16];
@@ -140,6 +183,7 @@ static void put_gauges(const family_choice *c, FILE *out, const plan *p, const d
         put_probe(c, out, k == 0, name, "level", tidy(x), size[1]/2, 0);
     }
     if (p->beach > 0) put_probe(c, out, 0, "end", "level", size[0], size[1]/2, 0);
+    else if (p->slope > 0) put_run_up(c, out, p, size[1]/2);
     else put_probe(c, out, 0, "wall", "point", size[0], size[1]/2, chosen(c, "depth")/2);
     fputs("\n  ],\n", out);
 }
@@ -151,14 +195,16 @@ void write_wave(const family_choice *c, FILE *out)
     const double low[3] = { chosen(c, "maker-at"), 0, 0 }, high[3] = { size[0], size[1], chosen(c, "depth") };
     const int regular = chosen(c, "period") > 0;
     const double interval = regular ? chosen(c, "period")/10 : p.until/100;
-    char title[256];
+    char title[256], end[64];
+    if (p.slope > 0) snprintf(end, sizeof end, "runs up a slope of 1 : %.10g", chosen(c, "slope"));
+    else snprintf(end, sizeof end, p.beach > 0 ? "ends on a beach" : "meets a wall");
     if (regular)
-        snprintf(title, sizeof title, "a piston makes regular waves, which %s\n// The waves are %.4g m long "
-                 "and travel at %.4g m/s, their energy at %.4g m/s (linear theory)",
-                 p.beach > 0 ? "end on a beach" : "a wall sends back", p.length, p.speed, p.group);
+        snprintf(title, sizeof title, "a piston makes a train of waves, which %s\n// The waves are %.4g m "
+                 "long and travel at %.4g m/s, their energy at %.4g m/s (linear theory)", end, p.length,
+                 p.speed, p.group);
     else
-        snprintf(title, sizeof title, "a piston makes a solitary wave, which a wall sends back\n"
-                 "// The wave is %.4g m long and travels at %.4g m/s (Goring 1978)", p.length, p.speed);
+        snprintf(title, sizeof title, "a piston makes a solitary wave, which %s\n"
+                 "// The wave is %.4g m long and travels at %.4g m/s (Goring 1978)", end, p.length, p.speed);
     put_head(c, out, size, title, 0);
     fprintf(out, "  \"end_time\": %.10g,", p.until);
     if (regular) fprintf(out, "                   // s: %.4g periods", p.until/chosen(c, "period"));

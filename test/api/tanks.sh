@@ -52,10 +52,13 @@ expect 1 "the box is wider" new wave_impact --box-width 2
 expect 1 "--wave-height is more than 0.78 of --depth: such waves break" new wave_tank --wave-height 0.3
 expect 1 "the piston stands beyond the tank" new wave_tank --length 4 --maker-at 5
 expect 1 "piston and beach fill the tank" new wave_tank --length 2
+expect 1 "the far end has --slope or --beach, not both" new wave_tank --slope 10 --beach 1
+expect 1 "piston and slope fill the tank: give more --length" new wave_tank --slope 10 --length 4
 expect 1 "a solitary wave, --period 0, has neither --ramp nor --beach" new wave_tank --period 0 --beach 2
 expect 1 "the glass is full before" new hose --depth 0.1
 expect 1 "the hose is wider than the glass" new hose --diameter 0.1
-for more in "sloshing --period 1.4" "sloshing --dimension 2 --period 1.4" "wave_tank --dimension 2 --period 0" "hose --dimension 2"; do
+for more in "sloshing --period 1.4" "sloshing --dimension 2 --period 1.4" "wave_tank --dimension 2 --period 0" \
+        "wave_tank --dimension 2 --slope 5" "wave_tank --slope 4 --period 0" "hose --dimension 2"; do
     expect 0 "" new $more --spacing "$(coarse ${more%% *})" --method dfsph more
     expect 0 "" run more --quiet --until 0.02 --force --out out_more
     rm -rf more
