@@ -132,7 +132,7 @@ static void put_piston(const family_choice *c, FILE *out, const plan *p, const d
     fputs("      } } }", out);
     if (p->slope > 0) {
         fprintf(out, ",\n    // points of its upper side, m; base: what the body reaches down to\n"
-                "    { \"name\": \"slope\",\n"
+                "    { \"name\": \"slope\", \"sealed\": true,         // no water below it\n"
                 "      \"outline\": { \"points\": [[%.10g, 0], [%.10g, %.10g]], \"base\": 0",
                 p->tank - p->slope, p->tank, p->top);
         if (c->dimension == 3) fprintf(out, ", \"from\": 0, \"to\": %.10g", size[1]);
