@@ -20,7 +20,7 @@ typedef struct tobi_porous_def {
     double direction[3];              /* of stems, or across a screen; 0 = upwards, or the thinnest side */
 } tobi_porous_def;
 
-/* A porous zone; force, power and volume of the last step, in 2-D per m. */
+/* A porous zone; force, power and volume of the last step, in 2-D per m; 0 after a load. */
 typedef struct tobi_porous_info {
     double force[3];                  /* N, of the liquid on what is in the zone                       */
     double power;                     /* W, that it takes from the liquid                              */

@@ -124,6 +124,10 @@ static void take_over(tobi_world *w, loaded *l)
     s->time = l->clock[0];
     s->dt = l->clock[1];
     s->body_speed = l->clock[2];
+    for (int k = 0; k < s->porous_count; k++) {       /* known after a step */
+        tobi_porous *z = &s->porous[k];
+        z->force[0] = z->force[1] = z->force[2] = z->power = z->volume = 0;
+    }
     tobi_openings_set(w, l->way);
     for (int k = 0; k < w->system_count; k++) tobi_system_take(&w->system[k], &l->system[k]);
     w->system[0].step = l->step;
