@@ -20,7 +20,8 @@ def has_case(root, name, is_default):
     for run in sorted((root / "test/physics").glob("*/run.py")):
         scene = run.parent / "scene.json"
         text = text_of([run] + ([scene] if scene.exists() else []))
-        if f'"method": "{name}"' in text or (is_default and scene.exists() and '"method"' not in text):
+        runs = rf'"method": "{name}"|\bmethod={name}\b|methods=\([^)]*"{name}"'
+        if re.search(runs, text) or (is_default and scene.exists() and '"method"' not in text):
             return True
     return False
 

@@ -226,6 +226,8 @@ typedef struct tobi_body_def {
     double outline_from, outline_to;    /* m along that axis                                         */
     double outline_base;        /* m: points are the upper side of what reaches down to it; TOBI_NO_PLACE
                                    = a closed polygon                                                */
+    const char *terrain_file;   /* path: ESRI ASCII grid, or CSV of x, y, z; NULL = no terrain       */
+    double terrain_base;        /* m: it reaches down to it                                          */
     double scale[3];            /* 1, per axis, about the mesh's own origin, first                   */
     double rotation_axis[3];    /* direction; second                                                 */
     double rotation_angle;      /* degrees                                                           */

@@ -3,12 +3,13 @@
 #include "core/body.h"
 #include "geom/outline.h"
 #include "geom/shapes.h"
+#include "geom/terrain.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { BOX, SPHERE, CYLINDER, CAPSULE, PLATE, KNIFE, OUTLINE };
+enum { BOX, SPHERE, CYLINDER, CAPSULE, PLATE, KNIFE, OUTLINE, TERRAIN };
 
 static tobi_status make_box(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
 {
@@ -127,22 +128,36 @@ static tobi_status make_outline(tobi_body *b, const tobi_body_def *def, int dime
     return status;
 }
 
+static tobi_status make_terrain(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
+{
+    tobi_terrain t;
+    tobi_error why = { 0 };
+    if (dimension == 2)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s': a 2-D scene has no terrain; an outline with a "
+                         "base is a bed there", b->name);
+    tobi_status status = tobi_terrain_read(def->terrain_file, &t, &why);
+    if (status != TOBI_OK) tobi_fail(err, status, "body '%s': its terrain: %s", b->name, why.text);
+    else status = tobi_mesh_terrain(b->name, &t, def->terrain_base, &b->mesh, err);
+    tobi_terrain_free(&t);
+    return status;
+}
+
 static int find_kind(const tobi_body_def *def, int *shapes)
 {
     const double size[] = { 0, def->sphere_radius, def->cylinder_radius, def->capsule_radius,
                             def->plate_thickness, def->knife_thickness,
-                            def->outline_points || def->outline_file };
+                            def->outline_points || def->outline_file, def->terrain_file != NULL };
     int kind = BOX;
     *shapes = def->mesh != NULL;
-    for (int k = SPHERE; k <= OUTLINE; k++)
+    for (int k = SPHERE; k <= TERRAIN; k++)
         if (size[k] > 0) ++*shapes, kind = k;
     return kind;
 }
 
 const char *tobi_body_shape_key(const tobi_body_def *def)
 {
-    static const char *const keys[] = { "box", "sphere", "cylinder", "capsule", "plate", "knife",
-                                      "outline" };
+    static const char *const keys[] = { "box", "sphere", "cylinder", "capsule", "plate", "knife", "outline",
+                                        "terrain" };
     int shapes;
     return def->mesh ? "mesh" : keys[find_kind(def, &shapes)];
 }
@@ -153,12 +168,14 @@ tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dime
     const int kind = find_kind(def, &shapes);
     if (shapes > 1)
         return tobi_fail(err, TOBI_INVALID, "body '%s' has %d shapes; it may have one: a mesh, a box, a "
-                         "sphere, a cylinder, a capsule, a plate, a knife or an outline", b->name, shapes);
+                         "sphere, a cylinder, a capsule, a plate, a knife, an outline or a terrain", b->name,
+                         shapes);
     if (def->mesh) return tobi_at_key(err, tobi_mesh_read(def->mesh, &b->mesh, err), "mesh");
     const tobi_status status = kind == BOX     ? make_box(b, def, dimension, err)
                                : kind == PLATE ? make_plate(b, def, dimension, err)
                                : kind == KNIFE ? make_knife(b, def, dimension, err)
                                : kind == OUTLINE ? make_outline(b, def, dimension, err)
+                               : kind == TERRAIN ? make_terrain(b, def, dimension, err)
                                                : make_round(b, def, kind, dimension, err);
     return tobi_at_key(err, status, "%s", tobi_body_shape_key(def));
 }

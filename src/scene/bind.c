@@ -2,7 +2,7 @@
    places. Drawback: types of the table are all that JSON can say. */
 #define _GNU_SOURCE 1
 #include "scene/bind.h"
-#include "scene/points.h"
+#include "scene/point_list.h"
 #include "scene/describe/describe.h"
 #include "scene/spelling.h"
 #include "tobiuo/scene.h"
@@ -323,7 +323,7 @@ static void bind_text(const slot *s)
     int is_path = strcmp(s->row->unit, "path") == 0, is_list = strcmp(s->row->unit, "names") == 0;
     if (strcmp(s->row->unit, "points") == 0) {
         char *points;
-        if (!tobi_points_read(s->binder->source, s->place, s->value, &points)) return;
+        if (!tobi_point_list_read(s->binder->source, s->place, s->value, &points)) return;
         kept = tobi_texts_keep(s->binder->texts, points);
         memcpy(s->member, &kept, sizeof kept);
         return;

@@ -215,7 +215,7 @@ static void check_solids(const tobi_scene *scene, tobi_source *source)
 }
 
 static const char *const body_shapes[] = { "mesh", "box", "sphere", "cylinder", "capsule", "plate",
-                                          "knife", "outline" };
+                                          "knife", "outline", "terrain" };
 
 /* Which shapes an entry of bodies gives: how many, and the last. */
 static int count_shapes(json_t *value, const char **last)
@@ -268,11 +268,13 @@ static void check_shape(const tobi_scene *scene, tobi_source *source, int body, 
     if (!json_is_object(value)) return;
     if (count != 1) {
         tobi_source_mistake(source, entry, "must have one of mesh, box, sphere, cylinder, capsule, plate, "
-                            "knife and outline; it has %s", count ? "several" : "none");
+                            "knife, outline and terrain; it has %s", count ? "several" : "none");
         return;
     }
+    tobi_check_file(source, &(tobi_place){ &(tobi_place){ entry, "terrain", 0 }, "file", 0 },
+                    scene->bodies[body].def.terrain_file);
     const int flat = strcmp(shape, "plate") == 0 || strcmp(shape, "knife") == 0;
-    const char *size = flat ? "thickness" : "radius";
+    const char *size = flat ? "thickness" : strcmp(shape, "terrain") == 0 ? "file" : "radius";
     tobi_place place = { entry, shape, 0 };
     if (strcmp(shape, "box") == 0) check_body_box(scene, source, body, entry);
     else if (strcmp(shape, "outline") == 0) check_outline(scene, source, body, &place);

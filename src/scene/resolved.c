@@ -59,7 +59,7 @@ static void drop_shapes(const tobi_body_def *def, json_t *object)
         { "mesh", def->mesh != NULL }, { "sphere", def->sphere_radius > 0 },
         { "cylinder", def->cylinder_radius > 0 }, { "capsule", def->capsule_radius > 0 },
         { "plate", def->plate_thickness > 0 }, { "knife", def->knife_thickness > 0 },
-        { "outline", def->outline_points || def->outline_file } };
+        { "outline", def->outline_points || def->outline_file }, { "terrain", def->terrain_file != NULL } };
     int box = 1;
     for (size_t k = 0; k < sizeof shapes/sizeof *shapes; k++) {
         if (!shapes[k].has) json_object_del(object, shapes[k].key);

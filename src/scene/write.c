@@ -2,7 +2,7 @@
    the scene are lost. */
 #define _GNU_SOURCE 1
 #include "scene/write.h"
-#include "scene/points.h"
+#include "scene/point_list.h"
 #include "base/param.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +25,7 @@ static json_t *make_text(const tobi_param *row, const char *names)
 {
     const int is_list = strcmp(row->unit, "names") == 0 ||
                         (strcmp(row->unit, "name or names") == 0 && strchr(names, ','));
-    if (strcmp(row->unit, "points") == 0) return tobi_points_write(names);
+    if (strcmp(row->unit, "points") == 0) return tobi_point_list_write(names);
     if (!is_list) return json_string(names);
     json_t *list = json_array();
     int failed = !list;

@@ -114,6 +114,11 @@ static const tobi_param body_rows[] = {
       .doc = "Where it begins along the axis; in 2-D it is not read." },
     { .key = "outline.to", REAL, AT(tobi_body_def, outline_to), PLACE, .unit = "m",
       .doc = "Where it ends along the axis; in 2-D it is not read." },
+    { .key = "terrain.file", TEXT, AT(tobi_body_def, terrain_file), .unit = "path",
+      .doc = "Heights of a bed in 3-D: an ESRI ASCII grid, or a CSV table of x, y and z (as in z [m]) of all "
+             "points of a lattice." },
+    { .key = "terrain.base", REAL, AT(tobi_body_def, terrain_base), PLACE, .unit = "m",
+      .doc = "The body reaches from the heights down to it." },
     { .key = "scale", VEC3, AT(tobi_body_def, scale), .def = { 1, 1, 1 }, FACTOR,
       .positive = true, .unit = "1",
       .doc = "Size factor, one number or one per axis, about the mesh's own origin, applied "

@@ -157,7 +157,7 @@ static void wrong_outlines_are_refused(void **state)
     assert_non_null(strstr(err.text, "has points and a file; it may have one"));
     b.outline_file = NULL, b.sphere_radius = 0.1;
     assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_INVALID);
-    assert_non_null(strstr(err.text, "a plate, a knife or an outline"));
+    assert_non_null(strstr(err.text, "a knife, an outline or a terrain"));
     tobi_world_destroy(world);
 }
 
@@ -181,7 +181,7 @@ static void wrong_tables_are_refused(void **state)
     (void)state;
     static const struct { const char *table, *why; } cases[] = {
         { "", "is empty" },
-        { "x,y\n0,0\n", "1: the first line must name columns x and z" },
+        { "x,y\n0,0\n", "1: the first line names no column z; it must name both coordinates" },
         { "x [ft],z\n0,0\n", "1: the unit of column x is not known; allowed are [m], [cm], [mm] or none" },
         { "x,z,x\n0,0,0\n", "1: column x is there twice" },
         { "x,z\n0,0\n1,high\n", "3: \"high\" is no finite number" },

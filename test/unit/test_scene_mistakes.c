@@ -159,7 +159,7 @@ static void missing_keys(void **state)
           { "s.json:3:14: fluids[0].fill: is missing or empty", "" },
           { "s.json:3:19: fluids[1]: is a number, must be an object", "" },
           { "s.json:4:14: bodies[0].name: is missing", "" },
-          { "s.json:4:14: bodies[0]: ", "knife and outline; it has none" },
+          { "s.json:4:14: bodies[0]: ", "knife, outline and terrain; it has none" },
           { "s.json:4:26: bodies[0].motion: must have exactly one of script", "it has 0" });
 }
 

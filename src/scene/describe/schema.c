@@ -285,7 +285,7 @@ static void require_region(json_t *schema)
     }
     static const char *const more[][2] = { { "cylinder", "radius" }, { "capsule", "radius" },
                                            { "plate", "thickness" }, { "knife", "thickness" },
-                                           { "outline", NULL } };
+                                           { "outline", NULL }, { "terrain", "file" } };
     for (size_t k = 0; k < sizeof more/sizeof *more; k++) {
         json_t *shape = json_object_get(properties, more[k][0]);
         if (!shape) continue;

@@ -1,7 +1,7 @@
 /* Numbers are written with 17 digits, so that a scene that was written reads back the same bits. Drawback: a
    list of points is held twice while it is read. */
 #define _GNU_SOURCE
-#include "scene/points.h"
+#include "scene/point_list.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ static int check_point(tobi_source *source, const tobi_place *place, const json_
     return 1;
 }
 
-int tobi_points_read(tobi_source *source, const tobi_place *place, json_t *value, char **text)
+int tobi_point_list_read(tobi_source *source, const tobi_place *place, json_t *value, char **text)
 {
     size_t length, i;
     json_t *point;
@@ -45,7 +45,7 @@ int tobi_points_read(tobi_source *source, const tobi_place *place, json_t *value
     return good;
 }
 
-json_t *tobi_points_write(const char *text)
+json_t *tobi_point_list_write(const char *text)
 {
     json_t *list = json_array();
     int failed = !list;

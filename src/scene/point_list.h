@@ -4,6 +4,6 @@
 #include <jansson.h>
 
 /* 0 after a mistake. text: owned by the caller; NULL without memory. */
-int tobi_points_read(tobi_source *source, const tobi_place *place, json_t *value, char **text);
+int tobi_point_list_read(tobi_source *source, const tobi_place *place, json_t *value, char **text);
 /* A new list; NULL without memory. */
-json_t *tobi_points_write(const char *text);
+json_t *tobi_point_list_write(const char *text);
