@@ -8,6 +8,7 @@
 #include "tobiuo/base.h"
 #include "tobiuo/kinds.h"
 #include "tobiuo/methods.h"
+#include "tobiuo/outline.h"
 #include "tobiuo/porous.h"
 
 #ifdef __cplusplus
@@ -127,6 +128,7 @@ typedef struct tobi_fill_def {
     double      box_min[3], box_max[3];  /* m; used when mesh is NULL and radius is 0 */
     double      centre[3], radius;       /* m; the sphere, when radius > 0            */
     const char *mesh;                    /* path of a closed mesh, or NULL */
+    tobi_outline_def outline;            /* placed as a mesh, by scale, rotation and translation */
     const char *vessel;                  /* name of a body that is one, or NULL    */
     double      level;                   /* m, how high: coordinate along gravity, upwards */
     double      seed[3];                 /* m, a place in the compartment to be filled; at the default all */
@@ -193,7 +195,6 @@ typedef struct tobi_control_output {
 typedef tobi_status (*tobi_control_fn)(void *user, const tobi_control_input *in,
                                        tobi_control_output *out, tobi_error *err);
 
-#define TOBI_NO_PLACE (-1e9)
 #define TOBI_NOT_GIVEN (-1e9)
 
 /* The motor of a hinge: one of speed, angle and torque, or a file; of a guide one of speed, position and
@@ -220,12 +221,7 @@ typedef struct tobi_body_def {
     double plate_length, plate_width, plate_thickness;
     double knife_edge[3], knife_direction[3], knife_along[3];        /* middle; from back to edge; of it */
     double knife_length, knife_height, knife_thickness, knife_angle; /* m; degrees between its faces     */
-    const char *outline_points; /* "0,0 5,0.25 5,0", m, corners of a polygon; NULL = those of the file */
-    const char *outline_file;   /* path: CSV of such corners; both NULL = no outline                 */
-    int    outline_axis;        /* of the extrusion in 3-D: 0 y (points are x, z), 1 z (x, y), 2 x (y, z) */
-    double outline_from, outline_to;    /* m along that axis                                         */
-    double outline_base;        /* m: points are the upper side of what reaches down to it; TOBI_NO_PLACE
-                                   = a closed polygon                                                */
+    tobi_outline_def outline;   /* a polygon                                                         */
     const char *terrain_file;   /* path: ESRI ASCII grid, or CSV of x, y, z; NULL = no terrain       */
     double terrain_base;        /* m: it reaches down to it                                          */
     double scale[3];            /* 1, per axis, about the mesh's own origin, first                   */

@@ -30,3 +30,20 @@
 #define COLOR .type = TOBI_PARAM_VEC3, .def = { -1, -1, -1 }, .min = 0, .max = 255, .unit = "RGB"
 #define CHOICE(words, count) \
     .type = TOBI_PARAM_CHOICE, .min = 0, .max = (count) - 1, .choices = words, .unit = "word"
+/* The keys of a member that is a tobi_outline_def, which the file of the table has included. */
+#define OUTLINE_ROWS(type, member) \
+    { .key = "outline.points", TEXT, AT(type, member.points), .unit = "points", \
+      .doc = "Corners of a polygon, m: pairs of x and z, in 2-D of x and y. In 3-D it is extruded along " \
+             "axis." }, \
+    { .key = "outline.file", TEXT, AT(type, member.file), .unit = "path", \
+      .doc = "A CSV file of the corners instead. Its first line names the two coordinates, as in x [mm]: " \
+             "m, cm or mm." }, \
+    { .key = "outline.base", REAL, AT(type, member.base), .def = { TOBI_NO_PLACE }, PLACE, \
+      .unit = "m", .text = "none", .doc = "With it the points are a line to the right, as of a beach, and " \
+             "the body is what lies between it and this height." }, \
+    { .key = "outline.axis", CHOICE("y|z|x", 3), AT(type, member.axis), \
+      .doc = "Of the extrusion in 3-D: points are x and z for y, x and y for z, y and z for x." }, \
+    { .key = "outline.from", REAL, AT(type, member.from), PLACE, .unit = "m", \
+      .doc = "Where it begins along the axis; in 2-D it is not read." }, \
+    { .key = "outline.to", REAL, AT(type, member.to), PLACE, .unit = "m", \
+      .doc = "Where it ends along the axis; in 2-D it is not read." }

@@ -6,6 +6,7 @@
 #include "geom/terrain.h"
 #include "geom/vec3.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,40 +93,11 @@ static tobi_status make_knife(tobi_body *b, const tobi_body_def *def, int dimens
     return tobi_mesh_knife(b->name, &knife, &b->mesh, err);
 }
 
-/* Points from the text or the file, and the base below them. */
-static tobi_status read_outline(const tobi_body *b, const tobi_body_def *def, int axis, tobi_outline *o,
-                                tobi_error *err)
-{
-    int plane[2];
-    tobi_outline_axes(axis, plane);
-    tobi_error why = { 0 };
-    tobi_status status = def->outline_points ? tobi_outline_parse(def->outline_points, o, &why)
-                                             : tobi_outline_read(def->outline_file, plane, o, &why);
-    if (status == TOBI_OK && def->outline_base != TOBI_NO_PLACE)
-        status = tobi_outline_fill(o, def->outline_base, &why);
-    return status == TOBI_OK ? status
-                             : tobi_fail(err, status, "body '%s': its outline: %s", b->name, why.text);
-}
-
 static tobi_status make_outline(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
 {
-    const int axis = dimension == 2 || def->outline_axis == 1 ? 2 : def->outline_axis == 0 ? 1 : 0;
-    double from = def->outline_from, to = def->outline_to;
-    tobi_outline o = { 0 };
-    if (def->outline_points && def->outline_file)
-        return tobi_fail(err, TOBI_INVALID, "body '%s': its outline has points and a file; it may have "
-                         "one", b->name);
-    if (dimension == 3 && !(to > from))
-        return tobi_fail(err, TOBI_INVALID, "body '%s': its outline goes from %g to %g m along %c; to must "
-                         "be greater than from", b->name, from, to, "xyz"[axis]);
-    tobi_status status = read_outline(b, def, axis, &o, err);
-    for (int64_t k = 0; k < o.count && dimension == 2 && status == TOBI_OK; k++) {
-        const double way = fmax(fabs(o.at[k][0] - o.at[0][0]), fabs(o.at[k][1] - o.at[0][1]));
-        to = k == 0 ? way : fmax(to, way), from = -to;
-    }
-    if (status == TOBI_OK) status = tobi_mesh_prism(b->name, &o, axis, from, to, &b->mesh, err);
-    tobi_outline_free(&o);
-    return status;
+    char whose[120];
+    snprintf(whose, sizeof whose, "body '%s'", b->name);
+    return tobi_mesh_outline(whose, &def->outline, dimension, &b->mesh, err);
 }
 
 static tobi_status make_terrain(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
@@ -146,7 +118,7 @@ static int find_kind(const tobi_body_def *def, int *shapes)
 {
     const double size[] = { 0, def->sphere_radius, def->cylinder_radius, def->capsule_radius,
                             def->plate_thickness, def->knife_thickness,
-                            def->outline_points || def->outline_file, def->terrain_file != NULL };
+                            tobi_outline_given(&def->outline), def->terrain_file != NULL };
     int kind = BOX;
     *shapes = def->mesh != NULL;
     for (int k = SPHERE; k <= TERRAIN; k++)

@@ -67,14 +67,14 @@ static int meet(const double a[2], const double b[2], const double c[2], const d
     return turn(a, b, c)*turn(a, b, d) <= 0 && turn(c, d, a)*turn(c, d, b) <= 0;
 }
 
-static tobi_status check_sides(const char *name, const tobi_outline *o, tobi_error *err)
+static tobi_status check_sides(const char *whose, const tobi_outline *o, tobi_error *err)
 {
     for (int64_t i = 0; i < o->count; i++)
         for (int64_t j = i + 2; j < o->count - (i == 0); j++) {
             const double *a = o->at[i], *b = o->at[i + 1], *c = o->at[j], *d = o->at[(j + 1)%o->count];
             if (meet(a, b, c, d))
-                return tobi_fail(err, TOBI_INVALID, "body '%s': its outline crosses itself: the side from "
-                                 "(%g, %g) to (%g, %g) m meets that from (%g, %g) to (%g, %g) m", name, a[0],
+                return tobi_fail(err, TOBI_INVALID, "%s: its outline crosses itself: the side from "
+                                 "(%g, %g) to (%g, %g) m meets that from (%g, %g) to (%g, %g) m", whose, a[0],
                                  a[1], b[0], b[1], c[0], c[1], d[0], d[1]);
         }
     return TOBI_OK;
@@ -132,7 +132,7 @@ static void join_ends(int64_t n, int64_t ears, int32_t (*t)[3])
     }
 }
 
-static tobi_status make_prism(const char *name, const tobi_outline *o, int axis, const double end[2],
+static tobi_status make_prism(const char *whose, const tobi_outline *o, int axis, const double end[2],
                               tobi_mesh *out, tobi_error *err)
 {
     const int64_t n = o->count;
@@ -148,7 +148,7 @@ static tobi_status make_prism(const char *name, const tobi_outline *o, int axis,
     if (status == TOBI_OK) {
         const int64_t ears = cut_ears(o, corner, t);
         join_ends(n, ears, t);
-        status = tobi_mesh_build(name, 2*n, (const double (*)[3])x, 2*ears + 2*n, (const int32_t (*)[3])t,
+        status = tobi_mesh_build(whose, 2*n, (const double (*)[3])x, 2*ears + 2*n, (const int32_t (*)[3])t,
                                  out, err);
     }
     free(x);
@@ -157,31 +157,31 @@ static tobi_status make_prism(const char *name, const tobi_outline *o, int axis,
     return status;
 }
 
-tobi_status tobi_mesh_prism(const char *name, const tobi_outline *given, int axis, double from, double to,
+tobi_status tobi_mesh_prism(const char *whose, const tobi_outline *given, int axis, double from, double to,
                             tobi_mesh *out, tobi_error *err)
 {
     const double end[2] = { from, to };
     if (given->count > MOST_CORNERS)
-        return tobi_fail(err, TOBI_INVALID, "body '%s': its outline has %lld points; at most %d are allowed",
-                         name, (long long)given->count, MOST_CORNERS);
+        return tobi_fail(err, TOBI_INVALID, "%s: its outline has %lld points; at most %d are allowed",
+                         whose, (long long)given->count, MOST_CORNERS);
     if (given->count < 3)
-        return tobi_fail(err, TOBI_INVALID, "body '%s': its outline has %lld points; at least 3 are needed",
-                         name, (long long)given->count);
+        return tobi_fail(err, TOBI_INVALID, "%s: its outline has %lld points; at least 3 are needed",
+                         whose, (long long)given->count);
     tobi_outline o = { malloc((size_t)given->count*sizeof *o.at), given->count };
     if (!o.at) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a shape");
     memcpy(o.at, given->at, (size_t)o.count*sizeof *o.at);
     simplify(&o);
     const double area = o.count > 2 ? find_area(&o) : 0;
-    tobi_status status = check_sides(name, &o, err);
+    tobi_status status = check_sides(whose, &o, err);
     if (status == TOBI_OK && area == 0)
-        status = tobi_fail(err, TOBI_INVALID, "body '%s': its outline has no area", name);
+        status = tobi_fail(err, TOBI_INVALID, "%s: its outline has no area", whose);
     for (int64_t k = 0; area < 0 && 2*k + 1 < o.count; k++)
         for (int a = 0; a < 2; a++) {
             const double kept = o.at[k][a];
             o.at[k][a] = o.at[o.count - 1 - k][a];
             o.at[o.count - 1 - k][a] = kept;
         }
-    if (status == TOBI_OK) status = make_prism(name, &o, axis, end, out, err);
+    if (status == TOBI_OK) status = make_prism(whose, &o, axis, end, out, err);
     tobi_outline_free(&o);
     return status;
 }

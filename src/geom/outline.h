@@ -1,6 +1,7 @@
 /* A polygon, from a text or a table, and the prism over it. */
 #pragma once
 #include "geom/mesh.h"
+#include "tobiuo/outline.h"
 
 /* at: owned. */
 typedef struct tobi_outline { double (*at)[2]; int64_t count; } tobi_outline;
@@ -17,7 +18,13 @@ tobi_status tobi_outline_read(const char *path, const int plane[2], tobi_outline
 tobi_status tobi_outline_fill(tobi_outline *line, double base, tobi_error *err);
 void tobi_outline_free(tobi_outline *outline);
 
-/* The prism over a polygon of any sense, from `from` to `to` (m, above it) along an axis. TOBI_INVALID, with
-   name: fewer than three corners, sides that cross, no area. */
-tobi_status tobi_mesh_prism(const char *name, const tobi_outline *outline, int axis, double from, double to,
+/* The prism over a polygon of any sense, from `from` to `to` (m, above it) along an axis. whose: as "body
+   'bed'", for messages. TOBI_INVALID: fewer than three corners, sides that cross, no area. */
+tobi_status tobi_mesh_prism(const char *whose, const tobi_outline *outline, int axis, double from, double to,
                             tobi_mesh *out, tobi_error *err);
+
+/* 1: there is one. */
+int tobi_outline_given(const tobi_outline_def *def);
+/* Its mesh, in 2-D far to both sides of the plane. TOBI_INVALID, TOBI_NOT_FOUND, TOBI_IO. */
+tobi_status tobi_mesh_outline(const char *whose, const tobi_outline_def *def, int dimension, tobi_mesh *out,
+                              tobi_error *err);

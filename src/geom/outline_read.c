@@ -59,3 +59,42 @@ tobi_status tobi_outline_fill(tobi_outline *o, double base, tobi_error *err)
     TOBI_TRY(add_point(o, right, base, err));
     return add_point(o, left, base, err);
 }
+
+int tobi_outline_given(const tobi_outline_def *def) { return def->points || def->file; }
+
+/* Points from the text or the file, and the base below them. */
+static tobi_status read_outline(const char *whose, const tobi_outline_def *def, int axis, tobi_outline *o,
+                                tobi_error *err)
+{
+    int plane[2];
+    tobi_outline_axes(axis, plane);
+    tobi_error why = { 0 };
+    tobi_status status = def->points ? tobi_outline_parse(def->points, o, &why)
+                                     : tobi_outline_read(def->file, plane, o, &why);
+    if (status == TOBI_OK && def->base != TOBI_NO_PLACE)
+        status = tobi_outline_fill(o, def->base, &why);
+    return status == TOBI_OK ? status
+                             : tobi_fail(err, status, "%s: its outline: %s", whose, why.text);
+}
+
+tobi_status tobi_mesh_outline(const char *whose, const tobi_outline_def *def, int dimension, tobi_mesh *out,
+                              tobi_error *err)
+{
+    const int axis = dimension == 2 || def->axis == 1 ? 2 : def->axis == 0 ? 1 : 0;
+    double from = def->from, to = def->to;
+    tobi_outline o = { 0 };
+    if (def->points && def->file)
+        return tobi_fail(err, TOBI_INVALID, "%s: its outline has points and a file; it may have "
+                         "one", whose);
+    if (dimension == 3 && !(to > from))
+        return tobi_fail(err, TOBI_INVALID, "%s: its outline goes from %g to %g m along %c; to must "
+                         "be greater than from", whose, from, to, "xyz"[axis]);
+    tobi_status status = read_outline(whose, def, axis, &o, err);
+    for (int64_t k = 0; k < o.count && dimension == 2 && status == TOBI_OK; k++) {
+        const double way = fmax(fabs(o.at[k][0] - o.at[0][0]), fabs(o.at[k][1] - o.at[0][1]));
+        to = k == 0 ? way : fmax(to, way), from = -to;
+    }
+    if (status == TOBI_OK) status = tobi_mesh_prism(whose, &o, axis, from, to, out, err);
+    tobi_outline_free(&o);
+    return status;
+}

@@ -243,20 +243,15 @@ static void check_body_box(const tobi_scene *scene, tobi_source *source, int bod
                                 def->box_min[a], def->box_max[a], axis_name[a]);
 }
 
-static void check_outline(const tobi_scene *scene, tobi_source *source, int body, const tobi_place *outline)
+void tobi_check_outline(tobi_source *source, const tobi_place *outline, const tobi_outline_def *def,
+                        int dimension)
 {
-    const tobi_body_def *def = &scene->bodies[body].def;
-    json_t *value = json_array_get(json_object_get(scene->root, "bodies"), (size_t)body);
-    const json_t *given = json_object_get(value, "outline");
-    const int points = json_object_get(given, "points") != NULL;
-    const int file = json_object_get(given, "file") != NULL;
-    tobi_check_file(source, &(tobi_place){ outline, "file", 0 }, def->outline_file);
-    if (points == file)
-        tobi_source_mistake(source, outline, "must have points or a file; it has %s",
-                            file ? "both" : "neither");
-    if (scene->world.dimension == 3 && !(def->outline_to > def->outline_from))
+    tobi_check_file(source, &(tobi_place){ outline, "file", 0 }, def->file);
+    if (def->points && def->file)
+        tobi_source_mistake(source, outline, "must have points or a file, not both");
+    if (dimension == 3 && !(def->to > def->from))
         tobi_source_mistake(source, outline, "goes from %.10g to %.10g m along its axis; to must be greater "
-                            "than from", def->outline_from, def->outline_to);
+                            "than from", def->from, def->to);
 }
 
 /* One shape, with what makes it one. */
@@ -277,7 +272,12 @@ static void check_shape(const tobi_scene *scene, tobi_source *source, int body, 
     const char *size = flat ? "thickness" : strcmp(shape, "terrain") == 0 ? "file" : "radius";
     tobi_place place = { entry, shape, 0 };
     if (strcmp(shape, "box") == 0) check_body_box(scene, source, body, entry);
-    else if (strcmp(shape, "outline") == 0) check_outline(scene, source, body, &place);
+    else if (strcmp(shape, "outline") == 0) {
+        const json_t *given = json_object_get(value, shape);
+        if (!json_object_get(given, "points") && !json_object_get(given, "file"))
+            tobi_source_mistake(source, &place, "must have points or a file");
+        tobi_check_outline(source, &place, &scene->bodies[body].def.outline, scene->world.dimension);
+    }
     else if (strcmp(shape, "mesh") != 0 && !json_object_get(json_object_get(value, shape), size))
         tobi_source_mistake(source, &place, "must have a %s", size);
 }

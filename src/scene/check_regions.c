@@ -120,10 +120,13 @@ static void check_fill(const tobi_scene *scene, tobi_source *source, const tobi_
     int has_box = tobi_bind_has(t, given, "box.min") || tobi_bind_has(t, given, "box.max");
     int has_sphere = tobi_bind_has(t, given, "sphere.centre") || tobi_bind_has(t, given, "sphere.radius");
     int has_mesh = tobi_bind_has(t, given, "mesh"), has_vessel = tobi_bind_has(t, given, "vessel");
-    int shapes = has_box + has_sphere + has_mesh + has_vessel;
+    int has_outline = tobi_bind_has(t, given, "outline.points") || tobi_bind_has(t, given, "outline.file");
+    int shapes = has_box + has_sphere + has_mesh + has_outline + has_vessel;
     if (shapes != 1)
-        tobi_source_mistake(source, place, "must have one of box, sphere, mesh and vessel, it has %s",
-                            shapes ? "several" : "none");
+        tobi_source_mistake(source, place, "must have one of box, sphere, mesh, outline and vessel, it "
+                            "has %s", shapes ? "several" : "none");
+    else if (has_outline) tobi_check_outline(source, &(tobi_place){ place, "outline", 0 }, &fill->def.outline,
+                                             scene->world.dimension);
     else if (has_vessel) check_vessel(scene, source, fill, place);
     else if (has_mesh) tobi_check_file(source, &mesh, fill->def.mesh);
     else if (has_box && check_pair(source, place, &fill->bound, "box", "min", "max"))
@@ -131,13 +134,13 @@ static void check_fill(const tobi_scene *scene, tobi_source *source, const tobi_
     else if (has_sphere && check_pair(source, place, &fill->bound, "sphere", "centre", "radius"))
         check_sphere(scene, source, &fill->def, place);
     if (shapes == 1 && !has_vessel) check_unfilled(source, fill, place);
-    for (int k = 0; k < 4 && !has_mesh; k++) {
+    for (int k = 0; k < 4 && !has_mesh && !has_outline; k++) {
         if (!tobi_bind_has(t, given, of_mesh[k])) continue;
-        tobi_source_mistake(source, place, "scale, rotation and translation belong to a mesh");
+        tobi_source_mistake(source, place, "scale, rotation and translation belong to a mesh or an outline");
         break;
     }
     const double *a = fill->def.rotation_axis;
-    if (has_mesh && a[0] == 0 && a[1] == 0 && a[2] == 0)
+    if ((has_mesh || has_outline) && a[0] == 0 && a[1] == 0 && a[2] == 0)
         tobi_source_mistake(source, &axis, "is zero, must have a direction");
     check_motion(scene, source, &fill->def, place);
 }
@@ -209,7 +212,7 @@ static size_t list_regions(region *list, size_t count, const char *name, int own
     for (int j = 0; j < fill_count; j++) {
         const tobi_fill_def *f = &fills[j].def;
         region *r = &list[count];
-        if (f->mesh || f->vessel) continue;
+        if (f->mesh || f->outline.points || f->outline.file || f->vessel) continue;
         count++;
         *r = (region){ .list = name, .owner = owner, .index = j, .radius = f->radius };
         for (int a = 0; a < 3; a++) {

@@ -24,9 +24,11 @@ static json_t *write_fills(json_t *object, const tobi_scene_fill *fills, int cou
     for (int i = 0; i < count; i++) {
         const tobi_fill_def *def = &fills[i].def;
         json_t *fill = tobi_write_def(&tobi_fill_table, def);
-        if (def->mesh || def->vessel || def->radius > 0) json_object_del(fill, "box");
-        if (def->mesh || !(def->radius > 0)) json_object_del(fill, "sphere");
-        for (int k = 0; !def->mesh && k < 3; k++)
+        const int outline = def->outline.points || def->outline.file, shaped = def->mesh || outline;
+        if (shaped || def->vessel || def->radius > 0) json_object_del(fill, "box");
+        if (shaped || !(def->radius > 0)) json_object_del(fill, "sphere");
+        if (!outline) json_object_del(fill, "outline");
+        for (int k = 0; !shaped && k < 3; k++)
             json_object_del(fill, (const char *[]){ "scale", "translation", "rotation" }[k]);
         json_t *flow = fills[i].flow ? tobi_control_write(TOBI_FLOW_SCRIPT, &fills[i].flow_def) : NULL;
         if (fills[i].flow) failed |= json_object_set_new(fill, "flow", flow);
@@ -59,7 +61,7 @@ static void drop_shapes(const tobi_body_def *def, json_t *object)
         { "mesh", def->mesh != NULL }, { "sphere", def->sphere_radius > 0 },
         { "cylinder", def->cylinder_radius > 0 }, { "capsule", def->capsule_radius > 0 },
         { "plate", def->plate_thickness > 0 }, { "knife", def->knife_thickness > 0 },
-        { "outline", def->outline_points || def->outline_file }, { "terrain", def->terrain_file != NULL } };
+        { "outline", def->outline.points || def->outline.file }, { "terrain", def->terrain_file != NULL } };
     int box = 1;
     for (size_t k = 0; k < sizeof shapes/sizeof *shapes; k++) {
         if (!shapes[k].has) json_object_del(object, shapes[k].key);

@@ -140,6 +140,9 @@ void tobi_probe_drop_unread(const tobi_probe_def *def, json_t *object);
 int  tobi_check_has_domain(const tobi_scene *scene);
 void tobi_check_name(const tobi_scene *scene, tobi_source *source, const tobi_place *entry);
 void tobi_check_file(tobi_source *source, const tobi_place *place, const char *path);
+/* check.c: an outline of a body or a region, by the place of its object. */
+void tobi_check_outline(tobi_source *source, const tobi_place *outline, const tobi_outline_def *def,
+                        int dimension);
 
 /* unused.c: reports keys that are given and that nothing would read; takes them out of what the definition
    of a table has become, for resolved.json. def: of the body, solid or motion, NULL for other tables. Motions

@@ -99,21 +99,7 @@ static const tobi_param body_rows[] = {
     { .key = "knife.angle", REAL, AT(tobi_body_def, knife_angle), .def = { 20 }, RANGE(1, 120),
       .unit = "degrees", .doc = "Angle between its faces at the edge. With blade it cuts; above 60 degrees "
              "edge_angle must allow it." },
-    { .key = "outline.points", TEXT, AT(tobi_body_def, outline_points), .unit = "points",
-      .doc = "Corners of a polygon, m: pairs of x and z, in 2-D of x and y. In 3-D it is extruded along "
-             "axis." },
-    { .key = "outline.file", TEXT, AT(tobi_body_def, outline_file), .unit = "path",
-      .doc = "A CSV file of the corners instead. Its first line names the two coordinates, as in x [mm]: m, "
-             "cm or mm." },
-    { .key = "outline.base", REAL, AT(tobi_body_def, outline_base), .def = { TOBI_NO_PLACE }, PLACE,
-      .unit = "m", .text = "none", .doc = "With it the points are a line to the right, as of a beach, and "
-             "the body is what lies between it and this height." },
-    { .key = "outline.axis", CHOICE("y|z|x", 3), AT(tobi_body_def, outline_axis),
-      .doc = "Of the extrusion in 3-D: points are x and z for y, x and y for z, y and z for x." },
-    { .key = "outline.from", REAL, AT(tobi_body_def, outline_from), PLACE, .unit = "m",
-      .doc = "Where it begins along the axis; in 2-D it is not read." },
-    { .key = "outline.to", REAL, AT(tobi_body_def, outline_to), PLACE, .unit = "m",
-      .doc = "Where it ends along the axis; in 2-D it is not read." },
+    OUTLINE_ROWS(tobi_body_def, outline),
     { .key = "terrain.file", TEXT, AT(tobi_body_def, terrain_file), .unit = "path",
       .doc = "Heights of a bed in 3-D: an ESRI ASCII grid, or a CSV table of x, y and z (as in z [m]) of all "
              "points of a lattice." },

@@ -68,6 +68,7 @@ static const tobi_param fill_rows[] = {
       .doc = "Its radius." },
     { .key = "mesh", TEXT, AT(tobi_fill_def, mesh), .unit = "path",
       .doc = "A closed mesh (OBJ, STL or PLY) whose inside is filled, instead of a box." },
+    OUTLINE_ROWS(tobi_fill_def, outline),
     { .key = "vessel", TEXT, AT(tobi_fill_def, vessel), .unit = "name",
       .doc = "A body with \"vessel\": true that is filled up to level, instead of a box." },
     { .key = "level", REAL, AT(tobi_fill_def, level), PLACE, .unit = "m",
@@ -92,8 +93,8 @@ static const tobi_param fill_rows[] = {
 };
 
 const tobi_param_table tobi_fill_table = {
-    "fill", "An entry of fill: one region that a fluid or solid fills at the start: box, sphere, mesh "
-    "or vessel.",
+    "fill", "An entry of fill: a region that is filled at the start: box, sphere, mesh, outline or "
+    "vessel.",
     sizeof(tobi_fill_def), fill_rows };
 
 static const tobi_param solid_rows[] = {

@@ -1,6 +1,7 @@
 /* What fills the world at the start: fluids and solids with their regions. */
 #include "base/error.h"
 #include "base/param.h"
+#include "geom/outline.h"
 #include "geom/texture.h"
 #include "world/mixture.h"
 #include "world/names.h"
@@ -21,13 +22,15 @@ static tobi_status note_support(tobi_world *w, const tobi_fluid_def *def, tobi_e
 }
 
 /* Reads and places the mesh of a region; its volume as the integrals have it. */
-static tobi_status load_shape(const tobi_fill_def *f, int dimension, tobi_region *r, tobi_error *err)
+static tobi_status load_shape(const char *name, const tobi_fill_def *f, int dimension, tobi_region *r,
+                              tobi_error *err)
 {
     tobi_massprops props;
-    TOBI_TRY(tobi_mesh_read(f->mesh, &r->shape, err));
+    if (f->mesh) TOBI_TRY(tobi_mesh_read(f->mesh, &r->shape, err));
+    else TOBI_TRY(tobi_mesh_outline(name, &f->outline, dimension, &r->shape, err));
     TOBI_TRY(tobi_mesh_transform(&r->shape, f->scale, f->rotation_axis, f->rotation_angle, f->translation,
                                  err));
-    TOBI_TRY(tobi_mesh_orient(&r->shape, f->mesh, err));
+    TOBI_TRY(tobi_mesh_orient(&r->shape, f->mesh ? f->mesh : name, err));
     tobi_mesh_box(&r->shape, r->lower, r->upper);
     TOBI_TRY(dimension == 3 ? tobi_massprops_volume(&r->shape, &props, err)
                             : tobi_massprops_section(&r->shape, &props, err));
@@ -36,11 +39,18 @@ static tobi_status load_shape(const tobi_fill_def *f, int dimension, tobi_region
     return TOBI_OK;
 }
 
+/* In messages. */
+static const char *shape_of(const tobi_fill_def *f)
+{
+    return f->mesh ? f->mesh : tobi_outline_given(&f->outline) ? "an outline" : f->radius > 0 ? "a sphere"
+                                                                                             : "a box";
+}
+
 /* `name`: fluid or solid, in messages. */
 static tobi_status measure_region(const tobi_system *s, const char *name, const tobi_fill_def *f,
                                   tobi_region *r, tobi_error *err)
 {
-    int flat = s->box.dimension == 2;
+    const int flat = s->box.dimension == 2, shaped = f->mesh || tobi_outline_given(&f->outline);
     memcpy(r->lower, f->box_min, sizeof r->lower);
     memcpy(r->upper, f->box_max, sizeof r->upper);
     memcpy(r->velocity, f->velocity, sizeof r->velocity);
@@ -54,9 +64,9 @@ static tobi_status measure_region(const tobi_system *s, const char *name, const 
         r->level = f->level;
         return TOBI_OK;
     }
-    if (f->mesh) TOBI_TRY(load_shape(f, s->box.dimension, r, err));
+    if (shaped) TOBI_TRY(load_shape(name, f, s->box.dimension, r, err));
     for (int a = 0; a < 3; a++) {
-        if (f->mesh || !(f->radius > 0)) continue;
+        if (shaped || !(f->radius > 0)) continue;
         r->lower[a] = f->centre[a] - f->radius;
         r->upper[a] = f->centre[a] + f->radius;
     }
@@ -68,11 +78,11 @@ static tobi_status measure_region(const tobi_system *s, const char *name, const 
             return tobi_fail(err, TOBI_INVALID,
                              "%s: fill[%d], %s, reaches from %g to %g m along %c and lies outside the "
                              "domain, %g to %g m",
-                             name, r->number, f->mesh ? f->mesh : f->radius > 0 ? "a sphere" : "a box",
+                             name, r->number, shape_of(f),
                              r->lower[a], r->upper[a], "xyz"[a], s->box.lower[a],
                              s->box.lower[a] + s->box.size[a]);
     }
-    if (f->mesh) return TOBI_OK;
+    if (shaped) return TOBI_OK;
     double pi = acos(-1), side[3];
     for (int a = 0; a < 3; a++) side[a] = flat && a == 2 ? 1 : r->upper[a] - r->lower[a];
     r->volume = !(f->radius > 0) ? side[0]*side[1]*side[2]
@@ -106,7 +116,8 @@ static tobi_status add_regions(tobi_world *w, const tobi_system *s, const char *
         r->owner = s->fluid_count + s->solid_count;
         r->number = k;
         tobi_status status = measure_region(s, whose, &fills[k], r, err);
-        const char *shape = fills[k].mesh ? "mesh" : fills[k].radius > 0 ? "sphere" : "box";
+        const char *shape = fills[k].mesh ? "mesh" : tobi_outline_given(&fills[k].outline) ? "outline"
+                          : fills[k].radius > 0 ? "sphere" : "box";
         tobi_at_key(err, status, "fill[%d].%s", k, shape);
         w->region_count++;
         *volume += r->volume;

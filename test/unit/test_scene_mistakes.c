@@ -195,7 +195,7 @@ static void domain_and_regions(void **state)
           { "s.json:4:21: domain.walls.z: ", "did you mean \"periodic\"?" },
           { "s.json:5:48: fluids[0].fill[0].mesh: ", "cannot find" },
           { "s.json:5:74: fluids[0].fill[1]: ",
-            "must have one of box, sphere, mesh and vessel, it has none" });
+            "must have one of box, sphere, mesh, outline and vessel, it has none" });
     CHECK(make(spacing,
                "\"fill\": [ { \"box\": { \"min\": [0, 0.5, -0.1], \"max\": [1, 0.5, 0.5] } },\n"
                "{ \"box\": { \"min\": [0, 0, 0] } },\n"
@@ -206,7 +206,7 @@ static void domain_and_regions(void **state)
           { "s.json:4:20: fluids[0].fill[0].box: ",
             "reaches from -0.1 to 0.5 m in z, the domain only from 0 to 1 m" },
           { "s.json:5:10: fluids[0].fill[1].box.max: ", "is missing" },
-          { "s.json:6:1: fluids[0].fill[2]: ", "one of box, sphere, mesh and vessel, it has several" },
+          { "s.json:6:1: fluids[0].fill[2]: ", "mesh, outline and vessel, it has several" },
           { "s.json:7:1: fluids[0].fill[3]: ", "scale, rotation and translation belong to a mesh" });
     CHECK(make("\"spacing\": 3,", box, ", \"output\": { \"interval\": 1e-9 }"),
           { "s.json:2:12: spacing: ", "is 3 m, the domain has only 1 m in x" },

@@ -246,7 +246,7 @@ static void scenes_have_shapes(void **state)
     check_scene("\"outline\": { \"points\": [[0.1, 0.3], [0.9, 0.4]], \"base\": 0,\n\"axis\": \"x\", "
                 "\"from\": 0.2, \"to\": 0.4 }", NULL);
     check_scene("\"outline\": { \"from\": 0, \"to\": 1 }",
-                "outline: must have points or a file; it has neither");
+                "outline: must have points or a file");
     check_scene("\"outline\": { \"points\": [[0, 0], [1, 0], [0, 1]] }",
                 "outline: goes from 0 to 0 m along its axis; to must be greater than from");
     check_scene("\"outline\": { \"points\": 3, \"to\": 1 }",

@@ -241,7 +241,7 @@ static void bad_regions_are_refused_in_words(void **state)
            "reaches from 0.1 to 1.1 m in z, the domain only from -1 to 1 m");
     refuse(make("\"fill\": [ { " SPHERE("[0, 0, 0]", "0.5") ", \"mesh\": \"a.obj\" } ]", ""),
            "s.json:4:11: solids[0].fill[0]: ",
-           "must have one of box, sphere, mesh and vessel, it has several");
+           "must have one of box, sphere, mesh, outline and vessel, it has several");
     refuse(make("\"fill\": [ { " SPHERE("[0, 0, 0]", "0.5") ",\n\"rotation\": { \"angle\": 3 } } ]", ""),
            "s.json:4:11: solids[0].fill[0]: ", "scale, rotation and translation belong to a mesh");
     refuse(make("\"fill\": [ { \"mesh\": \"" TOBI_SOURCE_DIR "/test/meshes/box.obj\",\n"

@@ -340,7 +340,7 @@ static void test_mistakes(void **state)
     refuse(ball, "{ \"vessel\": \"cup\", \"level\": 0.5 }, { \"vessel\": \"cup\", \"level\": 0.2 }", "",
            "overlaps another region, fill[0] of fluid 'water', at (");
     refuse(cup, "{ \"vessel\": \"cup\", \"level\": 0.5, \"mesh\": \"cup.obj\" }", "",
-           "must have one of box, sphere, mesh and vessel, it has several");
+           "must have one of box, sphere, mesh, outline and vessel, it has several");
     refuse(cup, "{ \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] },\n\"level\": 0.5 }", "",
            "s.json:3:1: fluids[0].fill[0].level: is for a vessel; this region has its shape");
     refuse(cup, "{ \"sphere\": { \"centre\": [0, 0, 0], \"radius\": 0.3 }, \"seed\": [0, 0, 0] }", "",
