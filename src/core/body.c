@@ -344,7 +344,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
         tobi_body_free(b);
         return status;
     }
-    tobi_body_find_outline(b, point_spacing);
+    tobi_body_find_outermost(b, point_spacing);
     tell_size(b, dimension);
     return TOBI_OK;
 }

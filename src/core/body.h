@@ -135,8 +135,8 @@ void tobi_body_free(tobi_body *b);
 int tobi_body_any_free(const tobi_body *bodies, int count);
 /* 1 if any of them changes its shape. */
 int tobi_body_any_deforms(const tobi_body *bodies, int count);
-/* Fills `outermost`, `convex` and `thick` of a body that has just been placed. outline.c */
-void tobi_body_find_outline(tobi_body *b, double point_spacing);
+/* Fills `outermost`, `convex` and `thick` of a body that has just been placed. outermost.c */
+void tobi_body_find_outermost(tobi_body *b, double point_spacing);
 /* Makes the centre of mass of the definition, if any, that of `rest`; notes one outside of the mesh. */
 void tobi_body_take_centre(tobi_body *b, const tobi_body_def *def, int dimension);
 /* Builds rest_vertex and rest_bvh, for queries in the body's own axes, if they are not there yet. */

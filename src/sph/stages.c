@@ -71,6 +71,37 @@ void sph_stage(tobi_system *s, sph_view *v, int stage)
     bind_stage(v, sph_fields_of(&s->particles));
 }
 
+static void bind_fluids(const tobi_system *s, sph_view *v)
+{
+    for (int f = 0; f < s->fluid_count; f++) {
+        v->inverse_density[f] = (float)(1/s->fluid[f].density);
+        v->kinematic[f] = (float)(s->fluid[f].viscosity/s->fluid[f].density);
+        v->tension[f] = (float)s->fluid[f].tension;
+        v->yield_stress[f] = (float)s->fluid[f].yield_stress;
+        v->flow_index[f] = (float)s->fluid[f].flow_index;
+        v->creep_rate[f] = (float)s->fluid[f].creep_rate;
+        v->creep_viscosity[f] = (float)(s->fluid[f].viscosity*pow(s->fluid[f].creep_rate,
+                                                                 s->fluid[f].flow_index - 1));
+        v->eddy[f] = (float)(s->fluid[f].density*pow(s->fluid[f].smagorinsky*s->smoothing.spacing, 2));
+    }
+}
+
+static void bind_smoothing(const tobi_system *s, sph_view *v, double vessel)
+{
+    const tobi_smoothing_constants *c = &s->smoothing;
+    v->h = (float)c->h; v->inverse_h = (float)(1/c->h); v->shape = c->shape;
+    v->weight = (float)c->weight; v->slope = (float)c->slope;
+    v->wall_share = (float)c->wall_share; v->wall_lattice = (float)c->wall_lattice;
+    v->moment_lattice = (float)c->moment_lattice;
+    v->spacing = (float)c->spacing; v->volume = (float)c->volume; v->inverse_rate = (float)(1/c->rate);
+    v->dimension = c->dimension;
+    v->open_limit = (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
+    v->surface_limit = vessel == SPH_VESSEL_FULL ? -1e30f : v->open_limit;
+    v->sheet_limit = 0.6f*(float)c->dimension;
+    v->surface_gradient = 0.4f*c->plane.sigma[(int)(0.5*c->spacing/c->h*TOBI_PLANE_SAMPLES)];
+    v->table = &c->plane;
+}
+
 void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
 {
     const tobi_particles *p = &s->particles;
@@ -98,31 +129,11 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     v->fluid = p->fluid; v->list_start = s->cells.list_start; v->list_groups = s->cells.list_groups;
     v->list = s->cells.list; v->list_far = s->cells.list_far;
     memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
-    v->h = (float)c->h; v->inverse_h = (float)(1/c->h); v->shape = c->shape;
-    v->weight = (float)c->weight; v->slope = (float)c->slope;
-    v->wall_share = (float)c->wall_share; v->wall_lattice = (float)c->wall_lattice;
-    v->moment_lattice = (float)c->moment_lattice;
-    v->spacing = (float)c->spacing; v->volume = (float)c->volume; v->inverse_rate = (float)(1/c->rate);
-    v->dimension = c->dimension;
-    v->open_limit = (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
-    v->surface_limit = vessel == SPH_VESSEL_FULL ? -1e30f : v->open_limit;
-    v->sheet_limit = 0.6f*(float)c->dimension;
-    v->surface_gradient = 0.4f*c->plane.sigma[(int)(0.5*c->spacing/c->h*TOBI_PLANE_SAMPLES)];
-    v->table = &c->plane;
+    bind_smoothing(s, v, vessel);
     v->core = (float)(CORE*c->spacing);
     v->push = PUSH;
     bind_planes(s, v);
-    for (int f = 0; f < s->fluid_count; f++) {
-        v->inverse_density[f] = (float)(1/s->fluid[f].density);
-        v->kinematic[f] = (float)(s->fluid[f].viscosity/s->fluid[f].density);
-        v->tension[f] = (float)s->fluid[f].tension;
-        v->yield_stress[f] = (float)s->fluid[f].yield_stress;
-        v->flow_index[f] = (float)s->fluid[f].flow_index;
-        v->creep_rate[f] = (float)s->fluid[f].creep_rate;
-        v->creep_viscosity[f] = (float)(s->fluid[f].viscosity*pow(s->fluid[f].creep_rate,
-                                                                 s->fluid[f].flow_index - 1));
-        v->eddy[f] = (float)(s->fluid[f].density*pow(s->fluid[f].smagorinsky*c->spacing, 2));
-    }
+    bind_fluids(s, v);
     sph_phases_bind(s, v);
     v->band_depth = (float)band_depth(c);
     v->contact_cosine = (float)cos(s->sim->def.contact_angle*acos(-1)/180);

@@ -65,7 +65,7 @@ static int is_thick(const tobi_body *b, double point_spacing)
     return 1;
 }
 
-void tobi_body_find_outline(tobi_body *b, double point_spacing)
+void tobi_body_find_outermost(tobi_body *b, double point_spacing)
 {
     if (b->deforms) return;
     b->convex = is_convex(b, point_spacing);
