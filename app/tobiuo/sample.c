@@ -183,10 +183,8 @@ static int add_field(sample_run *s, const tobi_moment_field *f)
     if (s->field_count == TOBI_SAMPLE_FIELD_LIMIT || f->components > 9 || f->components < 1) return 0;
     snprintf(s->names[s->field_count], sizeof *s->names, "%s", f->name);
     *own = (sample_field){ .name = s->names[s->field_count++], .unit = "", .components = f->components };
-    const char *name, *unit;
-    int components;
-    for (int k = 0; (name = tobi_world_field_name(k, &components, &unit)); k++)
-        if (strcmp(name, own->name) == 0 && unit && strcmp(unit, "1") != 0) own->unit = unit;
+    const char *unit;
+    if (tobi_world_find_field(own->name, NULL, &unit) && strcmp(unit, "1") != 0) own->unit = unit;
     own->at = malloc((size_t)s->places.count*(size_t)f->components*sizeof(double) + 1);
     if (!own->at) return complain("out of memory");
     if (s->options->mean && tobi_sample_mean_create(s->places.count, f->components, s->options->threads,

@@ -67,18 +67,34 @@ static int find_lines(sample_run *s)
     return 0;
 }
 
+/* The column "x", or "x [mm]", and how many metres its unit is; -1 after a complaint. */
+static int find_coordinate(const sample_run *s, const table *t, char axis, double *scale)
+{
+    static const struct { const char *name; double scale; } units[] = {
+        { "", 1 }, { " [m]", 1 }, { " [cm]", 1e-2 }, { " [mm]", 1e-3 } };
+    for (int k = 0; k < t->columns; k++) {
+        const char *name = t->names[k];
+        if (name[0] != axis || (name[1] != '\0' && strncmp(name + 1, " [", 2) != 0)) continue;
+        for (size_t u = 0; u < sizeof units/sizeof *units; u++)
+            if (strcmp(name + 1, units[u].name) == 0) return *scale = units[u].scale, k;
+        complain("%s: the unit of column '%s' is not known; allowed are [m], [cm], [mm] or none, which is m",
+                 t->path, name);
+        return -1;
+    }
+    complain("%s: has no column '%c'; columns x, y%s are needed", t->path, axis,
+             s->looks.dimension == 3 ? ", z" : "");
+    return -1;
+}
+
 static int find_points(sample_run *s)
 {
     const char *path = s->options->points;
     table t;
     if (table_read(&t, path) != 0) return EXIT_ERROR;
-    table_strip_units(&t);
     int code = 0, column[3];
-    static const char *const axes[] = { "x", "y", "z" };
+    double scale[3];
     for (int a = 0; a < s->looks.dimension && !code; a++)
-        if ((column[a] = table_column(&t, axes[a])) < 0)
-            code = complain("%s: has no column '%s'; columns x, y%s are needed", path, axes[a],
-                            s->looks.dimension == 3 ? ", z" : "");
+        if ((column[a] = find_coordinate(s, &t, "xyz"[a], &scale[a])) < 0) code = EXIT_ERROR;
     if (!code && t.rows == 0) code = complain("%s: has no places", path);
     if (!code && (double)t.rows > MOST_PLACES)
         code = complain("%s: has %zu places, allowed are %.0f", path, t.rows, MOST_PLACES);
@@ -86,8 +102,8 @@ static int find_points(sample_run *s)
     for (size_t i = 0; i < t.rows && !code; i++) {
         s->places.x[i][2] = 0;
         for (int a = 0; a < s->looks.dimension && !code; a++)
-            if (!isfinite(s->places.x[i][a] = table_number(&t, i, column[a])))
-                code = complain("%s: place %zu has no number in column '%s'", path, i + 1, axes[a]);
+            if (!isfinite(s->places.x[i][a] = scale[a]*table_number(&t, i, column[a])))
+                code = complain("%s: place %zu has no number in column '%c'", path, i + 1, "xyz"[a]);
     }
     table_free(&t);
     return code;

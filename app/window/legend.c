@@ -17,10 +17,8 @@ typedef tobi_overlay canvas;
 
 static const char *unit_of(const char *field)
 {
-    const char *name, *unit;
-    for (int k = 0; (name = tobi_world_field_name(k, NULL, &unit)); k++)
-        if (strcmp(name, field) == 0) return strcmp(unit, "1") == 0 ? "" : unit;
-    return "";
+    const char *unit;
+    return tobi_world_find_field(field, NULL, &unit) && strcmp(unit, "1") != 0 ? unit : "";
 }
 
 static const char *state_of(const viewer *v)

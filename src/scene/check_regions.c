@@ -1,6 +1,7 @@
 /* Checks of what fills a scene at the start: boxes, spheres, meshes. */
 #include "scene/scene.h"
 #include "base/param.h"
+#include "geom/outline.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -212,7 +213,7 @@ static size_t list_regions(region *list, size_t count, const char *name, int own
     for (int j = 0; j < fill_count; j++) {
         const tobi_fill_def *f = &fills[j].def;
         region *r = &list[count];
-        if (f->mesh || f->outline.points || f->outline.file || f->vessel) continue;
+        if (f->mesh || tobi_outline_given(&f->outline) || f->vessel) continue;
         count++;
         *r = (region){ .list = name, .owner = owner, .index = j, .radius = f->radius };
         for (int a = 0; a < 3; a++) {

@@ -6,6 +6,7 @@
 #include "scene/openings.h"
 #include "scene/write.h"
 #include "base/param.h"
+#include "geom/outline.h"
 #include <stdlib.h>
 
 /* jansson's calls answer a NULL argument or a lack of memory with -1, so that one flag gathers all. */
@@ -24,7 +25,7 @@ static json_t *write_fills(json_t *object, const tobi_scene_fill *fills, int cou
     for (int i = 0; i < count; i++) {
         const tobi_fill_def *def = &fills[i].def;
         json_t *fill = tobi_write_def(&tobi_fill_table, def);
-        const int outline = def->outline.points || def->outline.file, shaped = def->mesh || outline;
+        const int outline = tobi_outline_given(&def->outline), shaped = def->mesh || outline;
         if (shaped || def->vessel || def->radius > 0) json_object_del(fill, "box");
         if (shaped || !(def->radius > 0)) json_object_del(fill, "sphere");
         if (!outline) json_object_del(fill, "outline");
@@ -61,7 +62,7 @@ static void drop_shapes(const tobi_body_def *def, json_t *object)
         { "mesh", def->mesh != NULL }, { "sphere", def->sphere_radius > 0 },
         { "cylinder", def->cylinder_radius > 0 }, { "capsule", def->capsule_radius > 0 },
         { "plate", def->plate_thickness > 0 }, { "knife", def->knife_thickness > 0 },
-        { "outline", def->outline.points || def->outline.file }, { "terrain", def->terrain_file != NULL } };
+        { "outline", tobi_outline_given(&def->outline) }, { "terrain", def->terrain_file != NULL } };
     int box = 1;
     for (size_t k = 0; k < sizeof shapes/sizeof *shapes; k++) {
         if (!shapes[k].has) json_object_del(object, shapes[k].key);

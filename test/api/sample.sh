@@ -212,6 +212,12 @@ expect 1 "three has no fluid 'watr'; did you mean water?" sample three --line "0
 expect 1 "still has no solid 'cube'" sample still --line "0,0 to 0.1,0" --solid cube
 expect 1 "missing.csv" sample still --points missing.csv
 printf 'x,z\n0.1,0.1\n' > flat.csv
+printf 'y [cm],x [mm]\n%s,%s\n' 10 100 > units.csv
+expect 0 "" sample still --points units.csv --until 0.01 --name units
+check "places in mm and cm" grep -q "^0,0,0.1,0.1,0," still/sample/units.csv
+printf 'x [ft],y\n0.1,0.1\n' > feet.csv
+expect 1 "feet.csv: the unit of column 'x [ft]' is not known; allowed are [m], [cm], [mm] or none" \
+    sample still --points feet.csv
 expect 1 "flat.csv: has no column 'y'; columns x, y are needed" sample still --points flat.csv
 printf 'x,y\n' > empty.csv
 expect 1 "empty.csv: has no places" sample still --points empty.csv

@@ -8,23 +8,10 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include "empty_world.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static tobi_world *make_world(int dimension)
-{
-    tobi_error err;
-    tobi_world *world;
-    tobi_world_def w = tobi_default_world_def();
-    w.dimension = dimension;
-    w.spacing = 0.05;
-    for (int a = 0; a < dimension; a++) w.domain_max[a] = 2;
-    w.gravity[2] = 0;
-    w.gravity[dimension - 1] = -9.81;
-    if (tobi_world_create(&w, NULL, &world, &err) != TOBI_OK) fail_msg("%s", err.text);
-    return world;
-}
 
 static tobi_body_def of(const char *points)
 {
@@ -52,7 +39,7 @@ static void expect(int dimension, int axis, const char *points, double area, dou
     static const int plane[3][2] = { { 0, 2 }, { 0, 1 }, { 1, 2 } }, along[3] = { 1, 2, 0 };
     tobi_error err;
     tobi_body_info info;
-    tobi_world *world = make_world(dimension);
+    tobi_world *world = make_empty_world(dimension, 0.05, 2);
     tobi_body_def b = of(points);
     b.outline.axis = axis;
     if (tobi_world_add_body(world, &b, &err) != TOBI_OK) fail_msg("%s", err.text);
@@ -109,7 +96,7 @@ static void a_line_fills_down_to_its_base(void **state)
     fputs("\xef\xbb\xbfstation;z [cm];x [mm]\n# surveyed\n1;0;500\n2; 20 ;1000\n\n3;\"60\";2000\n", file);
     fclose(file);
     for (int from_file = 0; from_file < 2; from_file++) {
-        tobi_world *world = make_world(3);
+        tobi_world *world = make_empty_world(3, 0.05, 2);
         tobi_body_def b = of(from_file ? NULL : "0.5,0 1,0.2 2,0.6");
         b.outline.file = from_file ? path : NULL;
         b.outline.base = 0;
@@ -164,7 +151,7 @@ static void regions_are_filled(void **state)
 static void refused(const char *points, double base, const char *why)
 {
     tobi_error err;
-    tobi_world *world = make_world(3);
+    tobi_world *world = make_empty_world(3, 0.05, 2);
     tobi_body_def b = of(points);
     b.outline.base = base;
     assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_INVALID);
@@ -187,7 +174,7 @@ static void wrong_outlines_are_refused(void **state)
     refused("0,0.1 1,0.2", 0.15, "the point (0, 0.1) m lies below the base, 0.15 m");
     refused("1,1", 0, "1 points; a line above a base has at least 2");
     tobi_error err;
-    tobi_world *world = make_world(3);
+    tobi_world *world = make_empty_world(3, 0.05, 2);
     tobi_body_def b = of("0,0 1,0 0,1");
     b.outline.to = 0.5;
     assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_INVALID);
@@ -235,7 +222,7 @@ static void wrong_tables_are_refused(void **state)
         FILE *file = fopen(path, "w");
         fputs(cases[k].table, file);
         fclose(file);
-        tobi_world *world = make_world(3);
+        tobi_world *world = make_empty_world(3, 0.05, 2);
         tobi_body_def b = of(NULL);
         b.outline.file = path;
         assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_INVALID);
@@ -243,7 +230,7 @@ static void wrong_tables_are_refused(void **state)
         tobi_world_destroy(world);
     }
     remove(path);
-    tobi_world *world = make_world(3);
+    tobi_world *world = make_empty_world(3, 0.05, 2);
     tobi_body_def b = of(NULL);
     b.outline.file = path;
     assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_NOT_FOUND);

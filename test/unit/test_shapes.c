@@ -8,23 +8,10 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include "empty_world.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static tobi_world *make_world(int dimension, double spacing)
-{
-    tobi_error err;
-    tobi_world *world;
-    tobi_world_def w = tobi_default_world_def();
-    w.dimension = dimension;
-    w.spacing = spacing;
-    for (int a = 0; a < dimension; a++) w.domain_max[a] = 1;
-    w.gravity[2] = 0;
-    w.gravity[dimension - 1] = -9.81;
-    if (tobi_world_create(&w, NULL, &world, &err) != TOBI_OK) fail_msg("%s", err.text);
-    return world;
-}
 
 static void set(double out[3], double x, double y, double z) { out[0] = x, out[1] = y, out[2] = z; }
 
@@ -58,7 +45,7 @@ static void shapes_have_their_volume_and_inertia(void **state)
     (void)state;
     const double r = 0.1, l = 0.3, ball = 4*M_PI/3*r*r*r, rod = M_PI*r*r*l;
     for (double spacing = 0.05; spacing > 0.01; spacing /= 2) {
-        tobi_world *world = make_world(3, spacing);
+        tobi_world *world = make_empty_world(3, spacing, 1);
         tobi_body_def b = tobi_default_body_def();
         b.density = 2000;
         b.name = "sphere";
@@ -109,7 +96,7 @@ static void shapes_have_their_volume_and_inertia(void **state)
 static void shapes_lie_along_their_axes(void **state)
 {
     (void)state;
-    tobi_world *world = make_world(3, 0.05);
+    tobi_world *world = make_empty_world(3, 0.05, 1);
     tobi_body_def b = tobi_default_body_def();
     const double r = 0.1, l = 0.3, n[3] = { 2.0/3, 1.0/3, 2.0/3 }, mass = 1000*M_PI*r*r*l;
     set(b.cylinder_start, 0.2, 0.3, 0.2);
@@ -128,7 +115,7 @@ static void shapes_lie_along_their_axes(void **state)
 static void two_dimensions_have_discs_and_plates(void **state)
 {
     (void)state;
-    tobi_world *world = make_world(2, 0.05);
+    tobi_world *world = make_empty_world(2, 0.05, 1);
     tobi_body_def b = tobi_default_body_def();
     set(b.sphere_centre, 0.3, 0.4, 0);
     b.sphere_radius = 0.1;
@@ -168,7 +155,7 @@ static void refuse(tobi_world *world, const tobi_body_def *b, const char *text)
 static void bad_shapes_are_refused(void **state)
 {
     (void)state;
-    tobi_world *world = make_world(3, 0.05), *flat = make_world(2, 0.05);
+    tobi_world *world = make_empty_world(3, 0.05, 1), *flat = make_empty_world(2, 0.05, 1);
     tobi_body_def b = tobi_default_body_def();
     b.cylinder_radius = 0.1;
     refuse(world, &b, "its cylinder has no length");

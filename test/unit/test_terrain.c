@@ -7,29 +7,16 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include "empty_world.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 static char path[] = "/tmp/terrainXXXXXX";
 
-static tobi_world *make_world(int dimension)
-{
-    tobi_error err;
-    tobi_world *world;
-    tobi_world_def w = tobi_default_world_def();
-    w.dimension = dimension;
-    w.spacing = 0.1;
-    for (int a = 0; a < dimension; a++) w.domain_max[a] = 4;
-    w.gravity[2] = 0;
-    w.gravity[dimension - 1] = -9.81;
-    if (tobi_world_create(&w, NULL, &world, &err) != TOBI_OK) fail_msg("%s", err.text);
-    return world;
-}
-
 static tobi_status add(const char *file, double base, tobi_body_info *info, tobi_error *err)
 {
-    tobi_world *world = make_world(3);
+    tobi_world *world = make_empty_world(3, 0.1, 4);
     tobi_body_def b = tobi_default_body_def();
     b.name = "bed";
     b.terrain_file = path;
@@ -105,14 +92,14 @@ static void wrong_files_are_refused(void **state)
     refused("x,y,z\n0,0,1\n1,0,1\n0,1,1\n0,1,1\n", "the point x = 0, y = 1 m is there twice");
     refused("x,y\n0,0\n", "names no column z; it must name x, y and z");
     tobi_error err;
-    tobi_world *world = make_world(2);
+    tobi_world *world = make_empty_world(2, 0.1, 4);
     tobi_body_def b = tobi_default_body_def();
     b.name = "bed";
     b.terrain_file = path;
     assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_UNSUPPORTED);
     assert_non_null(strstr(err.text, "a 2-D scene has no terrain; an outline with a base is a bed there"));
     tobi_world_destroy(world);
-    world = make_world(3);
+    world = make_empty_world(3, 0.1, 4);
     b.terrain_file = "/nowhere/bed.asc";
     assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_NOT_FOUND);
     assert_non_null(strstr(err.text, "body 'bed': its terrain: /nowhere/bed.asc: "));
