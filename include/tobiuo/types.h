@@ -19,9 +19,10 @@ extern "C" {
    becomes faster has diverged. */
 #define TOBI_SPEED_LIMIT 1e6
 
-/* At most so many in a world; regions are those of all fluids and solids. */
+/* At most so many in a world; regions are those of all fluids and solids, fills those of one in a scene. */
 enum {
-    TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_REGION_LIMIT = 2048,
+    TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_FILL_LIMIT = 256,
+    TOBI_REGION_LIMIT = (TOBI_FLUID_LIMIT + TOBI_SOLID_LIMIT)*TOBI_FILL_LIMIT,
     TOBI_BODY_LIMIT = 1024, TOBI_PLANE_LIMIT = 26, TOBI_PROBE_LIMIT = 1024,
     TOBI_INLET_LIMIT = 32, TOBI_OUTLET_LIMIT = 32, TOBI_INTERFACE_LIMIT = 28
 };

@@ -126,7 +126,7 @@ static void nothing_where_something_must_stand(void **state)
     assert_null(none);
     REFUSED(tobi_world_add_fluid(w, NULL, &fill, 1, &err), TOBI_INVALID, "the definition is NULL");
     REFUSED(tobi_world_add_fluid(w, &fluid, NULL, 2, &err), TOBI_INVALID,
-            "fill_count is 2 and fills is NULL, allowed is 0 to 2047");
+            "fill_count is 2 and fills is NULL, allowed is 0 to 67327");
     REFUSED(tobi_world_add_fluid(w, &fluid, &fill, -1, &err), TOBI_INVALID, "fill_count is -1, allowed is");
     REFUSED(tobi_world_add_solid(w, NULL, &fill, 1, &err), TOBI_INVALID, "the definition is NULL");
     REFUSED(tobi_world_add_body(w, NULL, &err), TOBI_INVALID, "the definition is NULL");

@@ -150,6 +150,37 @@ static void regions_side_by_side(void **state)
     if (!strstr(line, "solids[0].fill[1]: overlaps the box solids[0].fill[0]")) fail_msg("%s", line);
 }
 
+/* A row of squares of one particle each. */
+static void put_row(FILE *out, int i)
+{
+    fprintf(out, "{ \"name\": \"s%d\", \"fill\": [", i);
+    for (int k = 0; k < TOBI_FILL_LIMIT; k++)
+        fprintf(out, "%s{ \"box\": { \"min\": [%d, %d], \"max\": [%d, %d] } }", k ? ",\n" : "", k, i, k + 1,
+                i + 1);
+    fprintf(out, "] }");
+}
+
+/* A world takes as many regions as its scene may have. */
+static void as_many_regions_as_allowed(void **state)
+{
+    (void)state;
+    static const char head[] = "{ \"method\": \"mlsmpm\", \"dimension\": 2, \"spacing\": 1, \"end_time\": 1,"
+                               " \"domain\": { \"min\": [0, 0], \"max\": [256, 255] }, \"solids\": [";
+    char *text = write_text(head, TOBI_SOLID_LIMIT, ",\n", put_row, "] }");
+    tobi_scene *scene = NULL;
+    tobi_world *w = NULL;
+    tobi_report *report = NULL;
+    int64_t particles, bodies, bytes;
+    OK(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, &report, &err));
+    OK(tobi_scene_build(scene, &w, &err));
+    OK(tobi_world_estimate(w, &particles, &bodies, &bytes, &err));
+    assert_int_equal(particles, TOBI_SOLID_LIMIT*TOBI_FILL_LIMIT);
+    tobi_world_destroy(w);
+    tobi_report_free(report);
+    tobi_scene_free(scene);
+    free(text);
+}
+
 static void put_name(FILE *out, int i) { fprintf(out, "k%d = %s%d", i + 1, i ? "k" : "", i); }
 
 static void names_of_parameters(void **state)
@@ -165,6 +196,7 @@ int main(void)
         cmocka_unit_test(unknown_keys),         cmocka_unit_test(keys_given_twice),
         cmocka_unit_test(unknown_fields),       cmocka_unit_test(blocks_of_old_scenes),
         cmocka_unit_test(regions_side_by_side), cmocka_unit_test(names_of_parameters),
+        cmocka_unit_test(as_many_regions_as_allowed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,7 +21,7 @@ static json_t *open_section(tobi_import *im, const tobi_old_section *section)
 {
     tobi_place place = { &root, section->name, 0 };
     json_t *list = json_object_get(im->source->root, section->name);
-    const int most = section == &tobi_old_fluid_block ? TOBI_REGION_LIMIT : TOBI_BODY_LIMIT;
+    const int most = section == &tobi_old_fluid_block ? TOBI_FLUID_LIMIT*TOBI_FILL_LIMIT : TOBI_BODY_LIMIT;
     if (list && json_array_size(list) > (size_t)most) {
         tobi_source_mistake(im->source, &place, "has %zu entries, allowed are %d", json_array_size(list),
                             most);
