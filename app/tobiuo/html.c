@@ -17,6 +17,11 @@ void html_text(FILE *file, const char *text)
     }
 }
 
+void html_heads(FILE *file, const char *const *texts)
+{
+    for (; *texts; texts++) fprintf(file, **texts ? "<th>%s" : "<th class=doc>%s", tr(*texts));
+}
+
 static void write_base64(FILE *to, FILE *from)
 {
     static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

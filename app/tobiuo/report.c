@@ -11,11 +11,13 @@
 
 typedef struct report_options { const char *dir, *out; double from; int force; } report_options;
 
-enum { KEY_FORCE = KEY_OWN, KEY_FROM };
+enum { KEY_FORCE = KEY_OWN, KEY_FROM, KEY_LANGUAGE };
 
 static const struct argp_option options[] = {
     { "out", 'o', "FILE", 0, "the page (DIR/report.html)", 0 },
     { "from", KEY_FROM, "S", 0, "means, least and most of the tables begin at this time, s (0)", 0 },
+    { "language", KEY_LANGUAGE, "LANGUAGE", 0,
+      "ja (Japanese) or en (English); by default as LC_ALL, LC_MESSAGES or LANG says", 0 },
     { "force", KEY_FORCE, NULL, 0, "replace FILE", 0 },
     { 0 }
 };
@@ -29,6 +31,10 @@ static error_t parse(int key, char *value, struct argp_state *state)
         o->out = value;
         break;
     case KEY_FROM: o->from = parse_positive(state, "--from", value); break;
+    case KEY_LANGUAGE:
+        if (choose_language(value) != 0)
+            argp_error(state, "--language: '%s' is neither ja nor en", value);
+        break;
     case KEY_FORCE: o->force = 1; break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
@@ -210,24 +216,24 @@ static void write_facts(const report *r)
     const json_t *low = report_value(r, "domain.min"), *high = report_value(r, "domain.max");
     const int time = table_column(&r->history, "time");
     fputs("<table class=facts>\n", r->file);
-    write_fact(r, "method", "%s, %d-D", r->method, r->dimension);
-    write_fact(r, "spacing", "%g m between particles", r->spacing);
+    write_fact(r, tr("method"), tr("%s, %d-D"), r->method, r->dimension);
+    write_fact(r, tr("spacing"), tr("%g m between particles"), r->spacing);
     if (r->dimension == 2)
-        write_fact(r, "domain", "%g x %g m", value_at(high, 0) - value_at(low, 0),
+        write_fact(r, tr("domain"), "%g x %g m", value_at(high, 0) - value_at(low, 0),
                    value_at(high, 1) - value_at(low, 1));
     else
-        write_fact(r, "domain", "%g x %g x %g m", value_at(high, 0) - value_at(low, 0),
+        write_fact(r, tr("domain"), "%g x %g x %g m", value_at(high, 0) - value_at(low, 0),
                    value_at(high, 1) - value_at(low, 1), value_at(high, 2) - value_at(low, 2));
     if (r->history.rows)
-        write_fact(r, "time", "%g s in %zu outputs", table_number(&r->history, r->history.rows - 1, time),
-                   r->history.rows);
+        write_fact(r, tr("time"), tr("%g s in %zu outputs"),
+                   table_number(&r->history, r->history.rows - 1, time), r->history.rows);
     if (r->summary)
-        write_fact(r, "particles", "%lld, and %lld of bodies",
+        write_fact(r, tr("particles"), tr("%lld, and %lld of bodies"),
                    (long long)json_integer_value(json_object_get(r->summary, "fluid_particles")),
                    (long long)json_integer_value(json_object_get(r->summary, "body_particles")));
-    write_matter(r, "fluids", "fluid");
-    write_matter(r, "solids", "solid");
-    write_matter(r, "bodies", "body");
+    write_matter(r, "fluids", tr("fluid"));
+    write_matter(r, "solids", tr("solid"));
+    write_matter(r, "bodies", tr("body"));
     fputs("</table>\n", r->file);
 }
 
@@ -240,25 +246,41 @@ static void embed(const report *r, const char *before, const char *type, const c
     fputs(after, r->file);
 }
 
+static void write_paragraph(const report *r, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static void write_paragraph(const report *r, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    fputs("<p>", r->file);
+    vfprintf(r->file, format, args);
+    fputs("</p>\n", r->file);
+    va_end(args);
+}
+
 /* Pictures that were deleted or damaged, or that an older end of the run left out. */
 static void write_gap(const report *r)
 {
     const pictures p = find_pictures(r->dir, NULL);
     const int64_t missing = (int64_t)r->history.rows - p.count;
     if (missing > 0)
-        fprintf(r->file, "<p>Of the pictures %lld %s missing; the one before is shown in %s place. "
-                "<code>tobiuo movie</code> draws what is missing.</p>\n", (long long)missing,
-                missing > 1 ? "are" : "is", missing > 1 ? "their" : "its");
+        write_paragraph(r, missing > 1 ?
+            tr("Of the pictures %lld are missing; the one before is shown in their place. "
+               "<code>tobiuo movie</code> draws what is missing.") :
+            tr("Of the pictures %lld is missing; the one before is shown in its place. "
+               "<code>tobiuo movie</code> draws what is missing."), (long long)missing);
 }
 
 static void write_no_movie(const report *r)
 {
     char *damaged = find_damaged(r->dir, NULL);
-    if (!damaged) fputs("<p>There is no movie: it needs ffmpeg.</p>\n", r->file);
+    if (!damaged) write_paragraph(r, "%s", tr("There is no movie: it needs ffmpeg."));
     else {
-        fputs("<p>There is no movie: the picture ", r->file);
+        fprintf(r->file, "<p>%s <code>", tr("There is no movie, as this picture is damaged:"));
         html_text(r->file, damaged);
-        fputs(" is damaged. Delete it, and <code>tobiuo movie</code> draws it anew.</p>\n", r->file);
+        fprintf(r->file, "</code>. %s</p>\n",
+                tr("Delete it, and <code>tobiuo movie</code> draws it anew."));
     }
     free(damaged);
 }
@@ -267,18 +289,22 @@ static void write_pictures(const report *r)
 {
     char *sheet = join(r->dir, "report_sheet.png"), *movie = join(r->dir, "report_movie.mp4");
     double slow = 1;
-    fputs("<h2>Pictures</h2>\n", r->file);
+    fprintf(r->file, "<h2>%s</h2>\n", tr("Pictures"));
     if (find_pictures(r->dir, NULL).count == 0) {
-        fputs("<p>There are none: the scene was run without <code>--frames</code>. "
-              "<code>tobiuo movie</code> draws them.</p>\n", r->file);
+        write_paragraph(r, "%s",
+            tr("There are none: the scene was run without <code>--frames</code>. "
+               "<code>tobiuo movie</code> draws them."));
     } else {
         write_gap(r);
-        if (make_sheet(r->dir, NULL, sheet) == 0)
-            embed(r, "<img alt=\"moments of the run\" src=\"", "image/png", sheet, "\">\n");
+        if (make_sheet(r->dir, NULL, sheet) == 0) {
+            fprintf(r->file, "<img alt=\"%s\" src=\"", tr("moments of the run"));
+            embed(r, "", "image/png", sheet, "\">\n");
+        }
         if (find_pictures(r->dir, NULL).count > 1) {
             if (make_small_movie(r->dir, movie, &slow) == 0) {
-                fprintf(r->file, "<h3>Movie</h3><p>%s%g%s</p>\n", slow > 1 ? "" : "As fast as the scene, x",
-                        slow, slow > 1 ? " times slower than the scene." : ".");
+                fprintf(r->file, "<h3>%s</h3>", tr("Movie"));
+                write_paragraph(r, slow > 1 ? tr("%g times slower than the scene.") :
+                                              tr("As fast as the scene, x%g."), slow);
                 embed(r, "<video controls loop muted src=\"", "video/mp4", movie, "\"></video>\n");
             } else {
                 write_no_movie(r);
@@ -295,9 +321,10 @@ static void write_plots(const report *r)
 {
     enum { LIMIT = 3000000 };       /* bytes of a plot: every step of a long run may be in it */
     plot_files files = { 0 };
-    fputs("<h2>Plots</h2>\n", r->file);
+    fprintf(r->file, "<h2>%s</h2>\n", tr("Plots"));
     const int drawn = draw_plots(r->dir, NULL, "svg", &files) == 0;
-    fputs(drawn ? "<div class=plots>\n" : "<p>There are none: they need gnuplot.</p>\n", r->file);
+    if (drawn) fputs("<div class=plots>\n", r->file);
+    else write_paragraph(r, "%s", tr("There are none: they need gnuplot."));
     for (int k = 0; drawn && k < files.count; k++) {
         char *path = join(files.folder, files.name[k]);
         FILE *file = fopen(path, "rb");
@@ -315,8 +342,8 @@ static void write_scene(const report *r)
 {
     char *text = r->scene ? json_dumps(r->scene, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     if (!text) return;
-    fputs("<h2>Scene</h2>\n<details><summary>with every default explicit "
-        "(resolved.json)</summary><pre>", r->file);
+    fprintf(r->file, "<h2>%s</h2>\n<details><summary>%s</summary><pre>", tr("Scene"),
+            tr("with every default explicit (resolved.json)"));
     html_text(r->file, text);
     fputs("</pre></details>\n", r->file);
     free(text);
@@ -326,8 +353,11 @@ static void write_scene(const report *r)
 static void write_inputs(const report *r)
 {
     if (!json_array_size(r->inputs)) return;
-    fputs("<h2>Files of the scene</h2>\n<div class=wide><table>\n"
-          "<tr><th>file<th>from, s<th>bytes<th>SHA-256\n", r->file);
+    static const char *const heads[] = { TEXT("file"), TEXT("from, s"), TEXT("bytes"), "SHA-256",
+                                         NULL };
+    fprintf(r->file, "<h2>%s</h2>\n<div class=wide><table>\n<tr>", tr("Files of the scene"));
+    html_heads(r->file, heads);
+    fputc('\n', r->file);
     for (size_t k = 0; k < json_array_size(r->inputs); k++) {
         const json_t *one = json_array_get(r->inputs, k);
         const char *path = json_string_value(json_object_get(one, "path"));
@@ -354,11 +384,13 @@ static void write_name(const report *r)
 static void write_page(const report *r)
 {
     const char *version = json_string_value(json_object_get(r->summary, "version"));
-    fputs("<!DOCTYPE html>\n<html lang=en>\n<head>\n<title>", r->file);
+    fprintf(r->file, "<!DOCTYPE html>\n<html lang=%s>\n<head>\n<title>", language_name());
     write_name(r);
     fprintf(r->file, "</title>\n%s</head>\n<body>\n<h1>", head);
     write_name(r);
-    fprintf(r->file, "</h1>\n<p class=sub>A run of Tobiuo %s</p>\n", version ? version : tobi_version());
+    fputs("</h1>\n<p class=sub>", r->file);
+    fprintf(r->file, tr("A run of Tobiuo %s"), version ? version : tobi_version());
+    fputs("</p>\n", r->file);
     write_facts(r);
     write_trust(r);
     write_pictures(r);
@@ -398,6 +430,7 @@ const struct argp report_argp = { .options = options, .parser = parse, .args_doc
 int tobiuo_report(int argc, char **argv)
 {
     report_options o = { 0 };
+    choose_language(NULL);
     parse_arguments(&report_argp, argc, argv, &o);
     report r = { .dir = o.dir, .from = o.from };
     char *out = o.out ? strdup(o.out) : join(o.dir, "report.html");

@@ -1,6 +1,7 @@
 /* The page of `tobiuo report`: what its parts share. */
 #pragma once
 #include "app.h"
+#include "language.h"
 #include "table.h"
 #include <jansson.h>
 
@@ -23,6 +24,8 @@ typedef struct report {
 void html_text(FILE *file, const char *text);
 /* The attribute's value "data:TYPE;base64,..." of a file. -1: it cannot be read, or has more than 32 MiB. */
 int html_data(FILE *file, const char *type, const char *path);
+/* A cell <th> for each text, in the page's language, up to NULL. An empty one is of class doc. */
+void html_heads(FILE *file, const char *const *texts);
 
 /* The scene's value at "a.b", NULL if there is none. */
 const json_t *report_value(const report *r, const char *path);

@@ -47,10 +47,14 @@ static digest digest_column(const part *p, int column)
 
 static void write_head(const report *r, const char *title)
 {
+    static const char *const heads[] = {
+        TEXT("quantity"), TEXT("unit"), TEXT("at the end"), TEXT("mean"), TEXT("least"),
+        TEXT("at, s"), TEXT("most"), TEXT("at, s"), NULL };
     fputs("<h3>", r->file);
     html_text(r->file, title);
-    fputs("</h3>\n<div class=wide><table><tr><th>quantity<th>unit<th>at the end<th>mean<th>least<th>at, s"
-          "<th>most<th>at, s<th class=doc>meaning\n", r->file);
+    fputs("</h3>\n<div class=wide><table><tr>", r->file);
+    html_heads(r->file, heads);
+    fprintf(r->file, "<th class=doc>%s\n", tr("meaning"));
 }
 
 static void write_row(const report *r, const tobi_column *c, const char *doc, const digest *d)
@@ -59,9 +63,9 @@ static void write_row(const report *r, const tobi_column *c, const char *doc, co
     fputs("<tr><td>", r->file);
     html_text(r->file, c->name);
     fprintf(r->file, "<td>%s<td>%.5g<td>%.5g<td>%.5g<td>%.4g<td>%.5g<td>%.4g<td "
-        "class=doc>", unit, d->last, d->mean, d->low,
+        "class=doc>", tr(unit), d->last, d->mean, d->low,
             d->low_time, d->high, d->high_time);
-    html_text(r->file, doc);
+    html_text(r->file, tr(doc));
     fputc('\n', r->file);
 }
 
@@ -97,19 +101,30 @@ static void write_columns(const report *r, const part *p, tobi_table list, const
     if (begun) fputs("</table></div>\n", r->file);
 }
 
+static void write_matter_head(const report *r)
+{
+    static const char *const heads[2][9] = {
+        { TEXT("body"), TEXT("mass, kg"), TEXT("volume, m3"), TEXT("of the liquid's density"),
+          TEXT("centre of mass, m"), TEXT("inertia, kg m2"), TEXT("draught, m"),
+          TEXT("GM about x, y, z, m"), NULL },
+        { TEXT("body"), TEXT("mass, kg/m"), TEXT("volume, m3/m"), TEXT("of the liquid's density"),
+          TEXT("centre of mass, m"), TEXT("inertia, kg m2/m"), TEXT("draught, m"),
+          TEXT("GM about x, y, z, m"), NULL } };
+    fprintf(r->file, "<h3>%s</h3>\n<div class=wide><table><tr>",
+            tr("Bodies that move by forces, at the start"));
+    html_heads(r->file, heads[r->dimension == 2]);
+    fputs("<th class=doc>\n", r->file);
+}
+
 /* Of bodies that move by forces, as they start; `tobiuo check` tells the same. */
 static void write_body_matter(const report *r)
 {
-    const char *each = r->dimension == 2 ? "/m" : "";
     tobi_body_matter m;
     int begun = 0;
     for (int k = 0; r->world && tobi_world_body_matter(r->world, k, &m) == TOBI_OK; k++) {
         if (m.dynamics == TOBI_PRESCRIBED) continue;
         if (!begun++)
-            fprintf(r->file, "<h3>Bodies that move by forces, at the start</h3>\n<div class=wide><table>"
-                    "<tr><th>body<th>mass, kg%s<th>volume, m3%s<th>of the liquid's density"
-                    "<th>centre of mass, m<th>inertia, kg m2%s<th>draught, m<th>GM about x, y, z, m"
-                    "<th class=doc>\n", each, each, each);
+            write_matter_head(r);
         fputs("<tr><td>", r->file);
         html_text(r->file, tobi_world_body_name(r->world, k));
         fprintf(r->file, "<td>%.5g<td>%.5g<td>", m.mass, m.volume);
@@ -121,7 +136,8 @@ static void write_body_matter(const report *r)
             fprintf(r->file, "%.4g<td>%.4g %.4g %.4g", m.draught, m.metacentre[0], m.metacentre[1],
                     m.metacentre[2]);
         else fputs("<td>", r->file);
-        fprintf(r->file, "<td class=doc>%s\n", m.solids > 0 ? "without the solids that it holds" : "");
+        fprintf(r->file, "<td class=doc>%s\n",
+                m.solids > 0 ? tr("without the solids that it holds") : "");
     }
     if (begun) fputs("</table></div>\n", r->file);
 }
@@ -135,7 +151,7 @@ static void write_bodies(const report *r)
         const char *body = t->cells[i*(size_t)t->columns + (size_t)name];
         const part p = { t, body, r->from };
         if (i > 0 && strcmp(body, t->cells[(size_t)name]) == 0) break;      /* the second output begins */
-        snprintf(title, sizeof title, "Body %s", body);
+        snprintf(title, sizeof title, tr("Body %s"), body);
         write_columns(r, &p, TOBI_TABLE_BODIES, "", title);
     }
 }
@@ -151,7 +167,7 @@ static void write_probes(const report *r)
         const char *kind = json_string_value(json_object_get(probe, "kind"));
         if (!name || !kind) continue;
         snprintf(prefix, sizeof prefix, "%s_", name);
-        snprintf(title, sizeof title, "Probe %s", name);
+        snprintf(title, sizeof title, tr("Probe %s"), name);
         for (int t = 0; t < 6; t++)
             if (strcmp(kind, kinds[t]) == 0)
                 write_columns(r, &p, (tobi_table)(TOBI_TABLE_POINT + t), prefix, title);
@@ -168,7 +184,7 @@ static void write_held(const report *r, const table *t, tobi_table list, const c
         const size_t size = strlen(t->names[k]);
         if (size <= length || strcmp(t->names[k] + size - length, last) != 0) continue;
         snprintf(prefix, sizeof prefix, "%.*s_", (int)(size - length), t->names[k]);
-        snprintf(title, sizeof title, "%s %.*s", kind, (int)(size - length), t->names[k]);
+        snprintf(title, sizeof title, "%s %.*s", tr(kind), (int)(size - length), t->names[k]);
         write_columns(r, &p, list, prefix, title);
     }
 }
@@ -176,18 +192,20 @@ static void write_held(const report *r, const table *t, tobi_table list, const c
 void write_tables(const report *r)
 {
     const part all = { &r->history, NULL, r->from };
-    fputs("<h2>Tables</h2>\n<p>Means are over time. Of forces the means over outputs are shown. "
-        "Quantities that are 0 throughout are left out.", r->file);
-    if (r->from > 0) fprintf(r->file, " Means, least and most are of the time from %g s on.", r->from);
+    fprintf(r->file, "<h2>%s</h2>\n<p>%s\n", tr("Tables"),
+            tr("Means are over time. Of forces the means over outputs are shown. "
+               "Quantities that are 0 throughout are left out."));
+    if (r->from > 0)
+        fprintf(r->file, tr("Means, least and most are of the time from %g s on."), r->from);
     fputs("</p>\n", r->file);
     write_body_matter(r);
     write_bodies(r);
-    write_held(r, &r->lines, TOBI_TABLE_LINES, "_tension", "Line");
-    write_held(r, &r->joints, TOBI_TABLE_JOINTS, "_gap", "Joint");
-    write_held(r, &r->zones, TOBI_TABLE_POROUS, "_volume", "Porous zone");
+    write_held(r, &r->lines, TOBI_TABLE_LINES, "_tension", TEXT("Line"));
+    write_held(r, &r->joints, TOBI_TABLE_JOINTS, "_gap", TEXT("Joint"));
+    write_held(r, &r->zones, TOBI_TABLE_POROUS, "_volume", TEXT("Porous zone"));
     if (r->probes.columns > 0) write_probes(r);
     write_waves(r);
-    write_columns(r, &all, TOBI_TABLE_HISTORY, "", "The whole");
+    write_columns(r, &all, TOBI_TABLE_HISTORY, "", tr("The whole"));
 }
 
 static double number_of(const json_t *json, const char *key)
@@ -200,31 +218,36 @@ static void write_totals(const report *r)
 {
     char steps[32], rest[32], memory[32];
     const double wall = number_of(r->summary, "wall_s"), in_steps = number_of(r->summary, "step_wall_s");
-    fprintf(r->file, "<p>%.0f steps took "
-        "%s", number_of(r->summary, "steps"), duration_text(in_steps, steps));
+    fputs("<p>", r->file);
+    fprintf(r->file, tr("%.0f steps took %s"), number_of(r->summary, "steps"),
+            duration_text(in_steps, steps));
     if (wall > in_steps)
-        fprintf(r->file, ", files and pictures that steps did not hide %s",
+        fprintf(r->file, tr(", files and pictures that steps did not hide %s"),
                 duration_text(wall - in_steps, rest));
-    fprintf(r->file, ". %.3g million particle-steps per second on %.0f threads; the program held %s at "
-        "most.</p>\n",
+    fprintf(r->file, tr(". %.3g million particle-steps per second on %.0f threads; the program held "
+                        "%s at most."),
             1e-6*number_of(r->summary, "particle_steps_per_s"), number_of(r->summary, "threads"),
             bytes_text(number_of(r->summary, "peak_rss_bytes"), memory));
+    fputs("</p>\n", r->file);
 }
 
 void write_times(const report *r)
 {
+    static const char *const heads[] = { TEXT("stage of a step"), "s", TEXT("share"), "", NULL };
     json_t *stages = json_object_get(r->summary, "stages_s"), *value;
     const char *name;
     double sum = 0;
     if (!stages) return;
-    fputs("<h2>Time</h2>\n", r->file);
+    fprintf(r->file, "<h2>%s</h2>\n", tr("Time"));
     write_totals(r);
     json_object_foreach(stages, name, value) sum += json_number_value(value);
-    fputs("<table><tr><th>stage of a step<th>s<th>share<th class=doc>\n", r->file);
+    fputs("<table><tr>", r->file);
+    html_heads(r->file, heads);
+    fputc('\n', r->file);
     json_object_foreach(stages, name, value) {
         const double share = sum > 0 ? json_number_value(value)/sum : 0;
         fputs("<tr><td>", r->file);
-        html_text(r->file, name);
+        html_text(r->file, tr(name));
         fprintf(r->file, "<td>%.3g<td>%.1f %%<td class=doc><div class=bar style=\"width:%.0fpx\"></div>\n",
                 json_number_value(value), 100*share, 240*share);
     }

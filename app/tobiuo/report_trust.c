@@ -1,6 +1,7 @@
 /* What of a run to trust: its own counters, the spacings across its bodies, and the weaknesses of its method
    that the scene meets. The sentences are those of README and docs/which_method.md. Drawback: they stand here
    once more. */
+#define _GNU_SOURCE
 #include "report.h"
 #include <math.h>
 #include <stdarg.h>
@@ -14,17 +15,18 @@ static void say(const report *r, grade g, const char *what, const char *format, 
 
 static void say(const report *r, grade g, const char *what, const char *format, ...)
 {
-    static const char *const word[] = { "good", "look", "wrong" };
-    char text[1000];
+    static const char *const word[] = { TEXT("good"), TEXT("look"), TEXT("wrong") };
+    char *text = NULL;
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    if (vasprintf(&text, format, args) < 0) exit(complain("out of memory"));
     va_end(args);
-    fprintf(r->file, "<tr><td><span class=\"mark %s\">%s</span><td>", word[g], word[g]);
+    fprintf(r->file, "<tr><td><span class=\"mark %s\">%s</span><td>", word[g], tr(word[g]));
     html_text(r->file, what);
     fputs("<td class=doc>", r->file);
     html_text(r->file, text);
     fputc('\n', r->file);
+    free(text);
 }
 
 static double total(const report *r, const char *key)
@@ -50,15 +52,19 @@ static void judge_outcome(const report *r)
 {
     const char *outcome = json_string_value(json_object_get(r->summary, "outcome"));
     if (*r->damaged)
-        say(r, WRONG, "files", "Damaged, and left out: %s. The lines that need them are missing.",
-            r->damaged);
+        say(r, WRONG, tr("files"),
+            tr("Damaged, and left out: %s. The lines that need them are missing."), r->damaged);
     if (strstr(r->damaged, "summary.json")) return;
-    if (!outcome) say(r, LOOK, "end", "The run has not ended: there is no summary.json. Tables go as "
-        "far as it got.");
-    else if (strcmp(outcome, "complete") == 0) say(r, GOOD, "end", "The run reached its end.");
-    else if (strcmp(outcome, "interrupted") == 0) say(r, LOOK, "end", "The run was stopped before its "
-        "end.");
-    else say(r, WRONG, "end", "The run ended as \"%s\" at %.6g s.", outcome, total(r, "time"));
+    if (!outcome)
+        say(r, LOOK, tr("end"),
+            tr("The run has not ended: there is no summary.json. Tables go as far as it got."));
+    else if (strcmp(outcome, "complete") == 0)
+        say(r, GOOD, tr("end"), tr("The run reached its end."));
+    else if (strcmp(outcome, "interrupted") == 0)
+        say(r, LOOK, tr("end"), tr("The run was stopped before its end."));
+    else
+        say(r, WRONG, tr("end"), tr("The run ended as \"%s\" at %.6g s."), outcome,
+            total(r, "time"));
 }
 
 /* A second entry of a path is of a later time. */
@@ -69,7 +75,8 @@ static void judge_inputs(const report *r)
         const double time = json_number_value(json_object_get(one, "time"));
         const char *path = json_string_value(json_object_get(one, "path"));
         if (time > 0 && path)
-            say(r, LOOK, "files", "From %.6g s on, the run has read %s in another state than before.", time,
+            say(r, LOOK, tr("files"),
+                tr("From %.6g s on, the run has read %s in another state than before."), time,
                 path);
     }
 }
@@ -78,36 +85,38 @@ static void judge_solver(const report *r)
 {
     const double steps = total(r, "steps"), bad = total(r, "unconverged_steps");
     if (total(r, "density_iterations_mean") + total(r, "divergence_iterations_mean") <= 0) return;
-    say(r, bad == 0 ? GOOD : bad < 0.01*steps ? LOOK : WRONG, "solver",
-        bad == 0 ? "It converged in all of %.0f steps." :
-        "It stopped short of its tolerance in some of %.0f steps: %.0f. See unconverged_steps for "
-        "when.", steps, bad);
+    say(r, bad == 0 ? GOOD : bad < 0.01*steps ? LOOK : WRONG, tr("solver"),
+        bad == 0 ? tr("It converged in all of %.0f steps.") :
+                   tr("It stopped short of its tolerance in some of %.0f steps: %.0f. See "
+                      "unconverged_steps for when."), steps, bad);
 }
 
 static void judge_density(const report *r)
 {
     const double error = total(r, "density_error_mean");
     if (!is_liquid(r) || !r->summary) return;
-    say(r, error < 0.005 ? GOOD : error < 0.02 ? LOOK : WRONG, "density",
-        "Particles are off the rest density by %.2g %% in the mean over the run; above 2 %% the liquid "
-        "is none any more.", 100*error);
+    say(r, error < 0.005 ? GOOD : error < 0.02 ? LOOK : WRONG, tr("density"),
+        tr("Particles are off the rest density by %.2g %% in the mean over the run; above 2 %% "
+           "the liquid is none any more."), 100*error);
 }
 
 static void judge_surface(const report *r)
 {
     const double end = at_end(r, "surface_share", 0), start = at_end(r, "surface_share", 1);
     if (is_liquid(r) && end > 0.5 && end > 2*start)
-        say(r, LOOK, "spray", "At the end %.0f %% of the particles are at a free surface (%.0f %% at "
-            "the start): drops and films that the spacing does not resolve.", 100*end, 100*start);
+        say(r, LOOK, tr("spray"),
+            tr("At the end %.0f %% of the particles are at a free surface (%.0f %% at the "
+               "start): drops and films that the spacing does not resolve."), 100*end, 100*start);
 }
 
 static void judge_losses(const report *r)
 {
     const double lost = total(r, "particles_lost"), back = total(r, "put_back");
-    if (lost > 0) say(r, LOOK, "losses", "%.0f particles left the domain.", lost);
+    if (lost > 0)
+        say(r, LOOK, tr("losses"), tr("%.0f particles left the domain."), lost);
     if (back > 0)
-        say(r, LOOK, "losses", "Particles got past a side of the domain and were put back %.0f "
-            "times.", back);
+        say(r, LOOK, tr("losses"),
+            tr("Particles got past a side of the domain and were put back %.0f times."), back);
 }
 
 static void judge_energy(const report *r)
@@ -124,12 +133,14 @@ static void judge_energy(const report *r)
         energy_look(&e, table_number(t, k, time), one[0], one[1], one[2]);
     }
     if (energy_gained(&e))
-        say(r, WRONG, "energy", "By t = %g s liquid and solids have gained %.3g J from nothing, beside "
-            "%.3g J that they had at the start. Shorter time steps (cfl, time_step) may "
-            "help.", e.time, e.gain, e.start);
+        say(r, WRONG, tr("energy"),
+            tr("By t = %g s liquid and solids have gained %.3g J from nothing, beside %.3g J "
+               "that they had at the start. Shorter time steps (cfl, time_step) may help."), e.time,
+            e.gain, e.start);
     else if (e.closed)
-        say(r, GOOD, "energy", "Nothing drives the scene. The most that liquid and solids have gained is "
-            "%.2g %% of their energy.", 100*e.gain/e.start);
+        say(r, GOOD, tr("energy"),
+            tr("Nothing drives the scene. The most that liquid and solids have gained is %.2g "
+               "%% of their energy."), 100*e.gain/e.start);
 }
 
 /* --- how fine the bodies are --- */
@@ -168,38 +179,45 @@ static void judge_body(const report *r, int b)
     char what[200];
     if (measure_widths(r->world, b, r->dimension, &w) != 0 || !(r->spacing > 0)) return;
     const double narrow = w.narrow/r->spacing, thin = w.thin/r->spacing;
-    snprintf(what, sizeof what, "body %s", tobi_world_body_name(r->world, b));
+    snprintf(what, sizeof what, tr("body %s"), tobi_world_body_name(r->world, b));
     if (!is_liquid(r)) {
-        say(r, GOOD, what, "Narrowest %.4g m, %.1f spacings. Forces act over a cell of the grid, 2 "
-            "spacings.",
+        say(r, GOOD, what,
+            tr("Narrowest %.4g m, %.1f spacings. Forces act over a cell of the grid, 2 spacings."),
             w.narrow, narrow);
         return;
     }
     if (is_vessel(r, b)) {
-        say(r, GOOD, what, "A vessel, at least %.0f spacings wide. Its walls stand outside of the "
-            "liquid.", narrow);
+        say(r, GOOD, what,
+            tr("A vessel, at least %.0f spacings wide. Its walls stand outside of the liquid."),
+            narrow);
         return;
     }
     if (fills_section(r, &w))
-        say(r, GOOD, what, "It closes the whole section of the domain: no liquid flows around it.");
+        say(r, GOOD, what,
+            tr("It closes the whole section of the domain: no liquid flows around it."));
     else if (narrow >= 16)
-        say(r, GOOD, what, "Narrowest %.4g m, %.0f spacings: enough for drag.", w.narrow, narrow);
+        say(r, GOOD, what, tr("Narrowest %.4g m, %.0f spacings: enough for drag."), w.narrow,
+            narrow);
     else if (stands_on_side(r, &w))
-        say(r, LOOK, what, "Narrowest %.4g m, %.1f spacings, and it stands on a side of the domain. Where "
-            "liquid flows around it, drag is 15 %% too large at 8 spacings across, and more below.",
-            w.narrow, narrow);
+        say(r, LOOK, what,
+            tr("Narrowest %.4g m, %.1f spacings, and it stands on a side of the domain. Where "
+               "liquid flows around it, drag is 15 %% too large at 8 spacings across, and more "
+               "below."), w.narrow, narrow);
     else
-        say(r, narrow < 7.95 ? WRONG : LOOK, what, "Narrowest %.4g m, %.1f spacings. Small bodies have "
-            "too much drag: 15 %% at 8 spacings across, more below. Use 16.", w.narrow, narrow);
+        say(r, narrow < 7.95 ? WRONG : LOOK, what,
+            tr("Narrowest %.4g m, %.1f spacings. Small bodies have too much drag: 15 %% at 8 "
+               "spacings across, more below. Use 16."), w.narrow, narrow);
     if (thin < 10 && thin < 0.8*narrow)
-        say(r, thin < 4 ? WRONG : LOOK, what, "A tenth of its surface is thinner than %.4g m, %.1f "
-            "spacings. Fins and plates act one spacing too wide; at four spacings a force is 25 %% too "
-            "large. Use ten.", w.thin, thin);
+        say(r, thin < 4 ? WRONG : LOOK, what,
+            tr("A tenth of its surface is thinner than %.4g m, %.1f spacings. Fins and plates "
+               "act one spacing too wide; at four spacings a force is 25 %% too large. Use ten."),
+            w.thin, thin);
     for (int a = 0; a < r->dimension; a++) {
         const tobi_world_def *d = tobi_scene_world_def(r->loaded);
         if (w.low[a] < d->domain_min[a] - 1e-6*r->spacing || w.high[a] > d->domain_max[a] + 1e-6*r->spacing)
-            say(r, LOOK, what, "It reaches out of the domain along %c. A body cut by a plane of "
-                "symmetry sinks 5 %% too fast at 8 spacings across. Compute the whole.", "xyz"[a]);
+            say(r, LOOK, what,
+                tr("It reaches out of the domain along %c. A body cut by a plane of symmetry "
+                   "sinks 5 %% too fast at 8 spacings across. Compute the whole."), "xyz"[a]);
     }
 }
 
@@ -266,17 +284,21 @@ static void warn_of_liquids(const report *r)
     const json_t *support = report_value(r, "dfsph.support");
     const gaps g = look_at_fills(r);
     if (strcmp(r->method, "dfsph") == 0 && !(json_is_number(support) && json_number_value(support) >= 3))
-        say(r, LOOK, "waves", "Waves are 1 to 2 %% too fast. Set dfsph.support to 3 where the period "
-            "counts, or use isph.");
+        say(r, LOOK, tr("waves"),
+            tr("Waves are 1 to 2 %% too fast. Set dfsph.support to 3 where the period counts, "
+               "or use isph."));
     if (strcmp(r->method, "isph") != 0 && json_array_size(report_value(r, "bodies")) > 0)
-        say(r, LOOK, "forces", "Forces of single steps scatter. Use the columns mean_... of bodies.csv; "
-            "with sudden motions set cfl to 0.1.");
+        say(r, LOOK, tr("forces"),
+            tr("Forces of single steps scatter. Use the columns mean_... of bodies.csv; with "
+               "sudden motions set cfl to 0.1."));
     if (g.begins_beside)
-        say(r, LOOK, "fill", "A fill begins beside a wall, not at it: the water stays 3 to 4 %% too "
-            "high there. Begin each fill at the wall.");
+        say(r, LOOK, tr("fill"),
+            tr("A fill begins beside a wall, not at it: the water stays 3 to 4 %% too high "
+               "there. Begin each fill at the wall."));
     if (g.stands_free)
-        say(r, LOOK, "fronts", "Water stands beside free floor: its front runs ahead of experiments, as "
-            "potential flow does.");
+        say(r, LOOK, tr("fronts"),
+            tr("Water stands beside free floor: its front runs ahead of experiments, as "
+               "potential flow does."));
 }
 
 static void warn_of_solids(const report *r)
@@ -289,17 +311,20 @@ static void warn_of_solids(const report *r)
         liquid |= model && strcmp(model, "liquid") == 0;
     }
     if (bonded && json_array_size(solids) > 1)
-        say(r, LOOK, "contact", "Solids stick to each other. Set \"bonded\": false where they may part.");
+        say(r, LOOK, tr("contact"),
+            tr("Solids stick to each other. Set \"bonded\": false where they may part."));
     if (liquid)
-        say(r, LOOK, "liquid", "Water of mlsmpm keeps small slopes. Use dfsph for water without solids.");
+        say(r, LOOK, tr("liquid"),
+            tr("Water of mlsmpm keeps small slopes. Use dfsph for water without solids."));
     if (solids)
-        say(r, LOOK, "fineness", "Bending is 3 %% off at 16 spacings through the height, drafts of soft "
-            "bodies 2.4 %% at 16 spacings across.");
+        say(r, LOOK, tr("fineness"),
+            tr("Bending is 3 %% off at 16 spacings through the height, drafts of soft bodies "
+               "2.4 %% at 16 spacings across."));
 }
 
 void write_trust(const report *r)
 {
-    fputs("<h2>What to trust</h2>\n<table class=trust>\n", r->file);
+    fprintf(r->file, "<h2>%s</h2>\n<table class=trust>\n", tr("What to trust"));
     judge_outcome(r);
     judge_inputs(r);
     judge_solver(r);
@@ -309,9 +334,10 @@ void write_trust(const report *r)
     judge_energy(r);
     for (int b = 0; r->world && b < tobi_world_body_count(r->world); b++) judge_body(r, b);
     if (!r->world && json_array_size(report_value(r, "bodies")) > 0)
-        say(r, LOOK, "bodies", "Spacings across bodies are not known: %s", r->why);
+        say(r, LOOK, tr("bodies"), tr("Spacings across bodies are not known: %s"), r->why);
     if (is_liquid(r)) warn_of_liquids(r);
     if (report_value(r, "solids")) warn_of_solids(r);
-    fputs("</table>\n<p>Run at two spacings before you trust a figure (<code>--spacing</code>): the "
-        "difference is the error that is left, or more.</p>\n", r->file);
+    fprintf(r->file, "</table>\n<p>%s</p>\n",
+            tr("Run at two spacings before you trust a figure (<code>--spacing</code>): the difference is "
+               "the error that is left, or more."));
 }

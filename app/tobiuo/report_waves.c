@@ -39,6 +39,16 @@ static wave_heights find_waves(const report *r, int column)
     return h;
 }
 
+static void write_head(const report *r)
+{
+    static const char *const heads[] = {
+        TEXT("probe"), TEXT("number of waves"), TEXT("mean period, s"), TEXT("mean height, m"),
+        TEXT("highest third, m"), TEXT("highest, m"), TEXT("lowest, m"), "", NULL };
+    fprintf(r->file, "<h3>%s</h3>\n<div class=wide><table><tr>", tr("Waves at level sensors"));
+    html_heads(r->file, heads);
+    fputc('\n', r->file);
+}
+
 static void write_row(const report *r, const char *name, const wave_heights *h)
 {
     fputs("<tr><td>", r->file);
@@ -61,13 +71,11 @@ void write_waves(const report *r)
         const wave_heights h = column >= 0 ? find_waves(r, column) : (wave_heights){ 0 };
         if (h.waves < 2) continue;
         if (!begun++)
-            fputs("<h3>Waves at level sensors</h3>\n<div class=wide><table><tr><th>probe<th>waves"
-                  "<th>mean period, s<th>mean height, m<th>highest third, m<th>highest, m<th>lowest, m"
-                  "<th class=doc>\n", r->file);
+            write_head(r);
         write_row(r, own, &h);
     }
     if (begun)
-        fputs("</table></div>\n<p>A wave is from one rise of the level through its mean to the next; "
-              "its height is from trough to crest. <code>tobiuo waves</code> has spectra, and the waves that "
-              "come back.</p>\n", r->file);
+        fprintf(r->file, "</table></div>\n<p>%s</p>\n",
+                tr("A wave is from one rise of the level through its mean to the next; its height is from "
+                   "trough to crest. <code>tobiuo waves</code> has spectra, and the waves that come back."));
 }

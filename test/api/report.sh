@@ -4,6 +4,7 @@
 # Answers 77 (skipped) without chromium, gnuplot or ffmpeg, after the tests that do without them.
 set -uo pipefail
 . "$(dirname "$0")/checks.sh" "$1"
+export LC_ALL=C.UTF-8       # report_japanese.py is of the other language
 
 cat > box.obj <<'END'
 v -0.1 -0.1 -0.1
@@ -263,6 +264,15 @@ check "all $((plots + 1)) pictures and the movie are seen" \
     grep -qE "seen: $((plots + 1)) of $((plots + 1)) pictures, 640 wide" dom.txt
 grep CONSOLE log.txt > err.txt
 check "the console is silent" test ! -s err.txt
+expect 0 "" report tank --language ja --out japanese.html
+sed "s/default-src 'none'/default-src 'none'; script-src 'unsafe-inline'/" japanese.html > seen.html
+sed -n '/^<script>/,$p' looked.html >> seen.html
+browse seen.html > dom.txt
+check "the Japanese page has the same pictures and movie" \
+    grep -qE "seen: $((plots + 1)) of $((plots + 1)) pictures, 640 wide" dom.txt
+check "and Japanese text" grep -q "<h2>結果の信頼性</h2>" dom.txt
+grep CONSOLE log.txt > err.txt
+check "without a word of the browser" test ! -s err.txt
 echo '<img src="http://localhost/x.png">' >> looked.html
 browse looked.html > dom.txt
 check "and would not be if the page asked for an address" grep -q "CONSOLE.*Content Security Policy" log.txt
