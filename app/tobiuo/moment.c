@@ -13,6 +13,15 @@ const tobi_moment_field *find_moment_field(const tobi_moment *m, const char *nam
     return NULL;
 }
 
+const tobi_moment_field *find_moment_part(const tobi_moment *m, const char *name, int *component)
+{
+    *component = -1;
+    const tobi_moment_field *f = find_moment_field(m, name);
+    const char *whole = f ? NULL : tobi_world_find_field(name, component, NULL);
+    if (whole) f = find_moment_field(m, whole);
+    return f && *component < f->components ? f : NULL;
+}
+
 int is_label_field(const char *name)
 {
     static const char *const labels[] = { "material", "part", "piece", "cut_side" };

@@ -4,6 +4,9 @@
 
 /* NULL: the output has no field of this name. */
 const tobi_moment_field *find_moment_field(const tobi_moment *moment, const char *name);
+/* The field of this name, or the one of which it names a component, "velocity_x"; component: -1 of the
+   whole. */
+const tobi_moment_field *find_moment_part(const tobi_moment *moment, const char *name, int *component);
 /* 1: the field numbers things, so that means of it say nothing. */
 int is_label_field(const char *name);
 /* ", velocity, pressure": the fields of an output, for messages. */

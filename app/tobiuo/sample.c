@@ -19,7 +19,8 @@ static const struct argp_option options[] = {
     { "box", KEY_BOX, "\"A to B\"", 0, "a regular grid from corner to corner, for ParaView; with equal "
       "coordinates along an axis a plane", 0 },
     { "cell", KEY_CELL, "M", 0, "distance of its points, m (the spacing of the particles)", 0 },
-    { "fields", KEY_FIELDS, "A,B,...", 0, "which fields (all of the files)", 0 },
+    { "fields", KEY_FIELDS, "A,B,...", 0, "which fields, or components of them, like velocity_x (all of "
+      "the files)", 0 },
     { "from", KEY_FROM, "S", 0, "use outputs from this time on, s (the start)", 0 },
     { "until", KEY_END, "S", 0, "and up to this time, s (the end)", 0 },
     { "mean", KEY_MEAN, NULL, 0, "and the means over these outputs, root mean squares of the fluctuations, "
@@ -176,20 +177,36 @@ static int complain_field(const sample_run *s, const tobi_moment *m, const char 
                     s->options->dir, name, list + (*list ? 2 : 0));
 }
 
-static int add_field(sample_run *s, const tobi_moment_field *f)
+/* component: -1 of the whole field; `name` says which. */
+static int add_field(sample_run *s, const tobi_moment_field *f, const char *name, int component)
 {
     tobi_error err = { 0 };
     sample_field *own = &s->field[s->field_count];
+    const size_t size = (size_t)s->places.count*sizeof(double);
     if (s->field_count == TOBI_SAMPLE_FIELD_LIMIT || f->components > 9 || f->components < 1) return 0;
-    snprintf(s->names[s->field_count], sizeof *s->names, "%s", f->name);
-    *own = (sample_field){ .name = s->names[s->field_count++], .unit = "", .components = f->components };
-    const char *unit;
-    if (tobi_world_find_field(own->name, NULL, &unit) && strcmp(unit, "1") != 0) own->unit = unit;
-    own->at = malloc((size_t)s->places.count*(size_t)f->components*sizeof(double) + 1);
-    if (!own->at) return complain("out of memory");
-    if (s->options->mean && tobi_sample_mean_create(s->places.count, f->components, s->options->threads,
+    snprintf(s->names[s->field_count], sizeof *s->names, "%s", name);
+    *own = (sample_field){ .name = s->names[s->field_count++], .unit = "", .component = component,
+                           .components = component < 0 ? f->components : 1, .all = f->components };
+    const char *unit, *source = tobi_world_find_field(own->name, NULL, &unit);
+    own->source = source ? source : own->name;
+    if (source && strcmp(unit, "1") != 0) own->unit = unit;
+    own->read = malloc(size*(size_t)own->all + 1);
+    own->at = component < 0 ? own->read : malloc(size + 1);
+    if (!own->read || !own->at) return complain("out of memory");
+    if (s->options->mean && tobi_sample_mean_create(s->places.count, own->components, s->options->threads,
                                                     &own->mean, &err) != TOBI_OK)
         return complain("%s", err.text);
+    return 0;
+}
+
+/* The same column twice: by the same name, or by the whole field and a component of it. */
+static int is_taken(const sample_run *s, const tobi_moment_field *f, int component)
+{
+    for (int k = 0; k < s->field_count; k++) {
+        const sample_field *own = &s->field[k];
+        if (strcmp(own->source, f->name) == 0 &&
+            (own->component == component || own->component < 0 || component < 0)) return 1;
+    }
     return 0;
 }
 
@@ -199,14 +216,17 @@ static int find_fields(sample_run *s, const tobi_moment *m)
     int code = 0;
     const char *list = s->options->fields;
     for (int k = 0; !list && k < m->field_count && !code; k++)
-        if (!is_label_field(m->fields[k].name)) code = add_field(s, &m->fields[k]);
+        if (!is_label_field(m->fields[k].name)) code = add_field(s, &m->fields[k], m->fields[k].name, -1);
     for (const char *at = list; at && !code; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
         char name[64];
+        int component;
         snprintf(name, sizeof name, "%.*s", (int)strcspn(at, ","), at);
-        const tobi_moment_field *f = find_moment_field(m, name);
+        const tobi_moment_field *f = find_moment_part(m, name, &component);
         if (f && is_label_field(name))
             code = complain("--fields: '%s' numbers things and has no means", name);
-        else if (f) code = add_field(s, f);
+        else if (f && is_taken(s, f, component))
+            code = complain("--fields: '%s' is asked for twice", name);
+        else if (f) code = add_field(s, f, name, component);
         else code = complain_field(s, m, name);
     }
     if (!code && s->field_count == 0) code = complain("the outputs of %s have no fields", s->options->dir);
@@ -237,6 +257,16 @@ static int take_solids(sample_run *s, int64_t output, double (**points)[3], int6
         : complain("%s", err.text);
 }
 
+/* Of the fields of which one component is asked for. */
+static void take_components(sample_run *s)
+{
+    for (int f = 0; f < s->field_count; f++) {
+        sample_field *own = &s->field[f];
+        for (int64_t i = 0; i < s->places.count && own->component >= 0; i++)
+            own->at[i] = own->read[own->all*i + own->component];
+    }
+}
+
 static int sample_moment(sample_run *s, int64_t output, const tobi_moment *m)
 {
     tobi_sample_def d = tobi_default_sample();
@@ -254,17 +284,18 @@ static int sample_moment(sample_run *s, int64_t output, const tobi_moment *m)
     d.places = (const double (*)[3])(s->moved ? s->moved : s->places.x);
     d.fields = fields, d.field_count = s->field_count, d.wet = s->wet;
     for (int f = 0; f < s->field_count; f++) {
-        const tobi_moment_field *field = find_moment_field(m, s->field[f].name);
-        if (!field || field->components != s->field[f].components)
+        const tobi_moment_field *field = find_moment_field(m, s->field[f].source);
+        if (!field || field->components != s->field[f].all)
             return complain("%s: the output of %g s has no field '%s'", s->options->dir, m->time,
-                            s->field[f].name);
-        fields[f] = (tobi_sample_field){ field->components, field->values, s->field[f].at };
+                            s->field[f].source);
+        fields[f] = (tobi_sample_field){ field->components, field->values, s->field[f].read };
     }
     int code = take_solids(s, output, &solids, &d.solid_count);
     d.solids = (const double (*)[3])solids;
     if (!code && tobi_sample_make(&d, &err) != TOBI_OK) code = complain("%s", err.text);
     free(solids);
     if (!code) sample_turn_values(s);
+    if (!code) take_components(s);
     for (int f = 0; f < s->field_count && s->options->mean && !code; f++)
         if (tobi_sample_mean_add(s->field[f].mean, s->wet, s->field[f].at, &err) != TOBI_OK)
             code = complain("%s", err.text);
@@ -357,7 +388,8 @@ static void free_run(sample_run *s)
     for (int k = 0; k < s->shown_count; k++)
         for (int f = 0; f < s->field_count; f++) free(s->shown[k].values[f]);
     for (int f = 0; f < s->field_count; f++) {
-        free(s->field[f].at);
+        if (s->field[f].at != s->field[f].read) free(s->field[f].at);
+        free(s->field[f].read);
         tobi_sample_mean_free(s->field[f].mean);
     }
     free(s->places.x);

@@ -24,11 +24,15 @@ typedef struct sample_places {
     int64_t n[3];
 } sample_places;
 
-/* A field and its values at an output. */
+/* A field, or one component of it, and its values at an output. */
 typedef struct sample_field {
     const char *name, *unit;           /* unit "" = none */
     int components;
     double *at;
+    const char *source;                /* the field in the files, "velocity" of "velocity_x" */
+    int component;                     /* -1: all of it */
+    int all;                           /* components of the source */
+    double *read;                      /* its values; of a whole field these are `at` */
     tobi_sample_mean *mean;            /* NULL: not asked for */
 } sample_field;
 
@@ -64,7 +68,7 @@ typedef struct sample_run {
 /* All return 0, or an exit code after a complaint. */
 /* sample_places.c: the places of the options; those beyond the domain are refused. */
 int sample_find_places(sample_run *s);
-/* sample_frame.c: looks for the body; its frame at an output; values into its axes. */
+/* sample_frame.c: looks for the body; its frame at an output; values of the sources into its axes. */
 int sample_find_body(sample_run *s);
 int sample_move_places(sample_run *s, double time);
 void sample_turn_values(sample_run *s);

@@ -12,8 +12,10 @@ const char *sample_component(int components, int k)
 {
     static const char *const axes[] = { "x", "y", "z" };
     static const char *const pairs[] = { "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz" };
+    static const char *const halves[] = { "xx", "yy", "zz", "xy", "yz", "zx" };
     static const char *const numbers[] = { "0", "1", "2", "3", "4", "5", "6", "7", "8" };
-    return components == 1 ? "" : components == 3 ? axes[k] : components == 9 ? pairs[k] : numbers[k];
+    return components == 1 ? "" : components == 3 ? axes[k] : components == 6 ? halves[k]
+         : components == 9 ? pairs[k] : numbers[k];
 }
 
 static int open_table(const sample_run *s, const char *end, sample_table *t)

@@ -131,16 +131,56 @@ static void find_velocity(const sample_frame *f, const double x[3], double u[3])
     }
 }
 
+/* The columns of a matrix, back into the axes of the start. */
+static void turn_columns(const sample_run *s, double m[3][3])
+{
+    for (int c = 0; c < 3; c++) {
+        const double from[3] = { m[0][c], m[1][c], m[2][c] };
+        double to[3];
+        turn(s, 1, from, to);
+        for (int a = 0; a < 3; a++) m[a][c] = to[a];
+    }
+}
+
+/* Stresses are turned on both sides, xx, yy, zz, xy, yz, zx. */
+static void turn_stress(const sample_run *s, double *at)
+{
+    const double x = at[3], y = at[4], z = at[5];
+    double m[3][3] = { { at[0], x, z }, { x, at[1], y }, { z, y, at[2] } }, half[3][3];
+    turn_columns(s, m);
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) half[a][b] = m[b][a];
+    turn_columns(s, half);
+    const double turned[6] = { half[0][0], half[1][1], half[2][2], half[0][1], half[1][2], half[2][0] };
+    memcpy(at, turned, sizeof turned);
+}
+
+/* Deformation gradients on the side of the present alone: their other side is the shape at rest. */
+static void turn_gradient(const sample_run *s, double *at)
+{
+    double m[3][3];
+    memcpy(m, at, sizeof m);
+    turn_columns(s, m);
+    memcpy(at, m, sizeof m);
+}
+
+static void turn_vector(const sample_run *s, int64_t place, int is_velocity, double *at)
+{
+    double u[3] = { 0, 0, 0 };
+    if (is_velocity) find_velocity(&s->now, s->moved[place], u);
+    for (int a = 0; a < 3; a++) u[a] = at[a] - u[a];
+    turn(s, 1, u, at);
+}
+
 void sample_turn_values(sample_run *s)
 {
     for (int f = 0; f < s->field_count && s->options->body; f++) {
-        const int is_velocity = strcmp(s->field[f].name, "velocity") == 0;
-        if (s->field[f].components != 3) continue;
-        for (int64_t i = 0; i < s->places.count; i++) {
-            double *at = s->field[f].at + 3*i, u[3] = { 0, 0, 0 };
-            if (is_velocity) find_velocity(&s->now, s->moved[i], u);
-            for (int a = 0; a < 3; a++) u[a] = at[a] - u[a];
-            turn(s, 1, u, at);
+        const int n = s->field[f].all, is_velocity = strcmp(s->field[f].source, "velocity") == 0;
+        for (int64_t i = 0; i < s->places.count && n > 1; i++) {
+            double *at = s->field[f].read + n*i;
+            if (n == 3) turn_vector(s, i, is_velocity, at);
+            if (n == 6) turn_stress(s, at);
+            if (n == 9) turn_gradient(s, at);
         }
     }
 }

@@ -23,8 +23,8 @@ static const struct argp_option options[] = {
     { "cell", KEY_CELL, "C", 0, "cell of the grid, spacings (0.75)", 0 },
     { "smooth", KEY_SMOOTH, "N", 0, "rounds of smoothing (20)", 0 },
     { "field", KEY_FIELD, "NAME", 0,
-      "field of the vertices, \"speed\" among them, in glb their colour; without it all, and the colours of "
-      "the materials", 0 },
+      "field of the vertices, or a component of one, like velocity_x; \"speed\" among them; in glb their "
+      "colour; without it all, and the colours of the materials", 0 },
     { "slow", KEY_SLOW, "X", 0, "glb: so many times slower than the scene (1)", 0 },
     { "last", KEY_LAST, NULL, 0, "the last output only", 0 },
     { "threads", KEY_THREADS, "N", 0, "threads (all cores)", 0 },
@@ -73,7 +73,7 @@ typedef struct input {
     tobi_moment moment;
     tobi_surface_def def;
     tobi_surface_field field[TOBI_SURFACE_FIELD_LIMIT];
-    double *speed, *color, *spacing;
+    double *speed, *part, *color, *spacing;      /* part: the component that was asked for */
     int32_t *group;
     tobi_looks looks;
     tobi_picture_skin *skins;          /* of materials with a texture, or NULL */
@@ -91,12 +91,13 @@ static void free_input(input *in)
 {
     tobi_moment_free(&in->moment);
     free(in->speed);
+    free(in->part);
     free(in->color);
     free(in->group);
     free(in->spacing);
     free(in->skin);
     in->skin = NULL;
-    in->speed = in->color = in->spacing = NULL;
+    in->speed = in->part = in->color = in->spacing = NULL;
     in->group = NULL;
 }
 
@@ -162,13 +163,26 @@ static int make_color(input *in)
     return 0;
 }
 
+/* One component of a field that was asked for. */
+static int take_component(const surface_options *o, input *in, const tobi_moment_field *f, int component)
+{
+    const int64_t count = in->moment.count;
+    in->part = malloc((size_t)count*sizeof *in->part + 1);
+    if (!in->part) return complain("out of memory");
+    for (int64_t i = 0; i < count; i++) in->part[i] = f->values[f->components*i + component];
+    in->field[0] = (tobi_surface_field){ o->field, 1, in->part };
+    return 0;
+}
+
 /* The field that was asked for, or all that are not numbers of something. */
 static int take_fields(const surface_options *o, input *in)
 {
     const tobi_moment *m = &in->moment;
-    int n = 0;
+    int n = 0, component = -1;
+    const tobi_moment_field *of = o->field ? find_moment_part(m, o->field, &component) : NULL;
     int code = make_speed(in);
     if (code == 0 && !o->field) code = make_color(in);
+    if (code == 0 && of && component >= 0) code = take_component(o, in, of, component), n = 1;
     if (code != 0) return code;
     if (!o->field) in->field[n++] = (tobi_surface_field){ "color", 4, in->color };
     if (in->speed && (!o->field || strcmp(o->field, "speed") == 0))

@@ -123,6 +123,53 @@ check "a solid" test "$(wet cube '0.45,0.1,0.005 to 0.45,0.1,0.4' --solid cube)"
 expect 0 "" sample three --box "0,0.1,0 to 0.6,0.1,0.4"
 vtk "a plane in 3-D" three/sample/box_000001.vti points=651 'bounds=[0, 0.6, 0.1, 0.1, 0, 0.4]'
 
+# Components, those of stresses too; in the frame of a body that has turned by 90 degrees about z.
+cat > beam.json <<'END2'
+{ "domain": {"min": [0, 0, 0], "max": [0.4, 0.2, 0.3]}, "gravity": [2, 5, -9.81], "spacing": 0.02, "end_time": 0.1,
+  "fluids": [{"name": "water", "fill": [{"box": {"min": [0, 0, 0], "max": [0.2, 0.2, 0.1]}}]}],
+  "solids": [{"name": "cube", "youngs_modulus": 1e5, "fill": [{"box": {"min": [0.3, 0, 0], "max": [0.4, 0.2, 0.2]}}]}],
+  "bodies": [{"name": "vane", "box": {"min": [0.22, 0, 0.2], "max": [0.26, 0.1, 0.24]},
+              "motion": {"rotation": {"axis": [0, 0, 1], "centre": [0.24, 0.05, 0.22], "rate": 900}}}],
+  "output": {"interval": 0.1, "fields": ["usual", "stress", "deformation_gradient"]} }
+END2
+expect 0 "" run beam.json --out beam --quiet
+beam() { expect 0 "" sample beam --solid cube --from 0.1 --count 2 --name "$@"; }
+beam all --line "0.35,0.1,0.1 to 0.35,0.11,0.1" --mean
+beam some --line "0.35,0.1,0.1 to 0.35,0.11,0.1" --fields stress_xz,velocity_z,stress_yy --mean
+beam turned --line "0.29,-0.06,0.1 to 0.30,-0.06,0.1" --with vane --fields stress_zx,velocity,deformation_gradient
+beam whole --line "0.29,-0.06,0.1 to 0.30,-0.06,0.1" --with vane --fields stress,velocity_y
+check "components" $python - <<'END2'
+import csv
+def read(name): return next(csv.DictReader(open(f"beam/sample/{name}.csv")))
+def same(a, b): assert abs(float(a) - float(b)) <= 1e-6*abs(float(b)), (a, b)
+a, some, turned, whole = (read(n) for n in ("all", "some", "turned", "whole"))
+assert list(some)[7:] == ["stress_xz [Pa]", "velocity_z [m/s]", "stress_yy [Pa]"], some
+stress = {k: float(a[f"stress_{k} [Pa]"]) for k in ("xx", "yy", "zz", "xy", "yz", "zx")}
+assert all(abs(x) > 1 for x in stress.values()), stress
+same(some["stress_xz [Pa]"], stress["zx"])
+same(some["velocity_z [m/s]"], a["velocity_z [m/s]"])
+same(some["stress_yy [Pa]"], stress["yy"])
+m, mean = read("some_mean"), read("all_mean")
+same(m["mean_stress_xz [Pa]"], mean["mean_stress_zx [Pa]"])
+# x of the body points along y, its y along -x
+expected = {"xx": stress["yy"], "yy": stress["xx"], "zz": stress["zz"], "xy": -stress["xy"], "yz": -stress["zx"],
+            "zx": stress["yz"]}
+for k, value in expected.items(): assert abs(float(whole[f"stress_{k} [Pa]"]) - value) < 1e-3*abs(stress["zz"]), (k, value)
+same(turned["stress_zx [Pa]"], whole["stress_zx [Pa]"])
+same(whole["velocity_y [m/s]"], turned["velocity_y [m/s]"])
+for k in "xyz":
+    assert abs(float(turned[f"deformation_gradient_x{k}"]) - float(a[f"deformation_gradient_y{k}"])) < 1e-6, k
+    assert abs(float(turned[f"deformation_gradient_y{k}"]) + float(a[f"deformation_gradient_x{k}"])) < 1e-6, k
+END2
+expect 1 "--fields: 'stress_xz' is asked for twice" sample beam --line "0.35,0.1,0.1 to 0.35,0.11,0.1" --solid cube \
+    --fields stress_zx,stress_xz
+expect 1 "--fields: 'velocity' is asked for twice" sample beam --line "0.35,0.1,0.1 to 0.35,0.11,0.1" --solid cube \
+    --fields velocity_x,velocity
+expect 1 "beam has no field 'velocity_w'; did you mean velocity?" sample beam --line "0,0,0 to 0,0,0.1" \
+    --fields velocity_w
+expect 0 "" sample beam --box "0.3,0,0 to 0.4,0.1,0.1" --solid cube --fields velocity_z,stress_xz
+vtk "components in a grid" beam/sample/box_000001.vti 'arrays={"wet": 1, "velocity_z": 1, "stress_xz": 1}'
+
 # Flows with exact solutions. The bound of the first is that of its case, test/physics/poiseuille.
 physics="$here/../physics"
 sed '/"dfsph"/d' "$physics/poiseuille/scene.json" > plates.json

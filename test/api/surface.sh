@@ -79,6 +79,32 @@ parts = g["meshes"][0]["primitives"]
 assert [g["materials"][p["material"]].get("alphaMode") for p in parts] == ["BLEND"], parts
 END
 
+# A component as the vertices' number, and the colour of glTF.
+expect 0 "" surface dam --last --field velocity_z
+vtk "a component" dam/surface/surface_000002.vtp 'arrays={"group": 1, "normals": 3, "velocity_z": 1}'
+for field in velocity velocity_z; do
+    expect 0 "" surface dam --last --field $field --format ply
+    mv dam/surface/surface_000002.ply $field.ply
+done
+check "it is the third of the vector" $python - <<'END'
+import struct
+def read(name):
+    head, _, body = open(name, "rb").read().partition(b"end_header\n")
+    size = {b"uchar": 1, b"int": 4, b"float": 4, b"double": 8}
+    names, at = {}, 0
+    for line in head.splitlines():
+        if not line.startswith(b"property") or b"list" in line: continue
+        names[line.split()[2].decode()] = at
+        at += size[line.split()[1]]
+    count = int(head.split(b"element vertex")[1].split()[0])
+    key = list(names)[-1]
+    return key, [struct.unpack_from("<f", body, at*i + names[key])[0] for i in range(count)]
+(whole, a), (part, b) = read("velocity.ply"), read("velocity_z.ply")
+assert (whole, part) == ("velocity_2", "velocity_z") and a == b and min(a) < -0.3, (whole, part)
+END
+expect 0 "" surface dam --format glb --field velocity_z
+expect 1 "dam has no field 'velocity_w'; it has speed, velocity" surface dam --field velocity_w
+
 # A solid whose particles are nearer to each other than the water's keeps its volume.
 cat > fine.json <<'END'
 { "domain": {"min": [0, 0, 0], "max": [1, 0.3, 0.4]}, "gravity": [0, 0, 0], "spacing": 0.02, "end_time": 0.001,
