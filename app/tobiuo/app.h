@@ -125,12 +125,17 @@ int parse_threads(struct argp_state *state, const char *text);
 error_t parse_argument(struct argp_state *state, int key, const char *value, const char *name,
                        const char **argument);
 /* The options of run and check that change the scene, and their parser, which takes an argument SCENE too. */
-enum { KEY_UNTIL = 256, KEY_SPACING, KEY_SET, KEY_OWN };
+enum { KEY_UNTIL = 256, KEY_SPACING, KEY_SET, KEY_LANGUAGE, KEY_OWN };
 #define SCENE_OPTIONS \
     { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s", 0 }, \
     { "spacing", KEY_SPACING, "M", 0, "particle spacing of the fluid, m", 0 }, \
     { "set", KEY_SET, "PATH=VALUE", 0, \
       "change any value of the scene, e.g. fluids[0].viscosity=0.1", 0 }
+/* The option of commands that write for readers; before it, choose_language(NULL). */
+#define LANGUAGE_OPTION \
+    { "language", KEY_LANGUAGE, "LANGUAGE", 0, \
+      "ja (Japanese) or en (English); by default as LC_ALL, LC_MESSAGES or LANG says", 0 }
+void parse_language(struct argp_state *state, const char *value);
 error_t parse_scene_option(struct argp_state *state, int key, const char *value, overrides *set,
                            const char **scene);
 

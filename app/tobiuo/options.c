@@ -1,5 +1,6 @@
 /* Values of options. */
 #include "app.h"
+#include "language.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,6 +27,12 @@ int parse_threads(struct argp_state *state, const char *text)
     if (end == text || *end != '\0' || value < 0 || value > 4096)
         argp_error(state, "--threads: '%s' is not a number from 0 (all cores) to 4096", text);
     return (int)value;
+}
+
+void parse_language(struct argp_state *state, const char *value)
+{
+    if (choose_language(value) != 0)
+        argp_error(state, "--language: '%s' is neither ja nor en", value);
 }
 
 error_t parse_argument(struct argp_state *state, int key, const char *value, const char *name,

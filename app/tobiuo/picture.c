@@ -2,6 +2,7 @@
    second program must be installed. */
 #define _GNU_SOURCE
 #include "picture.h"
+#include "language.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -159,7 +160,7 @@ void picture_write(FILE *script, const picture *p, const char *file)
     fputc('\n', script);
     for (int k = 0; k < p->panels; k++) {
         fputs(k == p->panels - 1 ? "set xlabel " : "unset xlabel", script);
-        if (k == p->panels - 1) write_text(script, p->x_label ? p->x_label : "time, s");
+        if (k == p->panels - 1) write_text(script, p->x_label ? p->x_label : tr("time, s"));
         fputc('\n', script);
         write_panel(script, p, &p->panel[k]);
     }

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "plot.h"
 #include "app.h"
+#include "language.h"
 #include "table.h"
 #include <errno.h>
 #include <math.h>
@@ -16,6 +17,7 @@ enum { KEY_SCENE = KEY_OWN };
 
 static const struct argp_option options[] = {
     { "format", 'f', "FORMAT", 0, "svg (default) or png", 0 },
+    LANGUAGE_OPTION,
     { "scene", KEY_SCENE, "SCENE", 0, "take the references of this scene, not those of the run", 0 },
     { 0 }
 };
@@ -29,6 +31,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
             argp_error(state, "--format: '%s' is neither svg nor png", value);
         o->format = value;
         break;
+    case KEY_LANGUAGE: parse_language(state, value); break;
     case KEY_SCENE: o->scene = value; break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
@@ -101,12 +104,19 @@ static int is_component(const char *column)
     return length > 2 && column[length - 2] == '_' && strchr("xyz", column[length - 1]);
 }
 
+/* unit: "", or in English. */
+static void write_y_label(panel *a, const char *quantity, const char *unit, int per_depth)
+{
+    char whole[40];
+    snprintf(whole, sizeof whole, per_depth ? "%s per m" : "%s", unit);
+    snprintf(a->y_label, sizeof a->y_label, *unit ? tr("%s, %s") : "%s", quantity, tr(whole));
+}
+
 /* Columns that older runs lack are left out, and panels of what the method does not have. */
 static int add_panel(picture *p, const rows *r, const panel_row *row, int dimension)
 {
     panel *a = &p->panel[p->panels];
-    snprintf(a->y_label, sizeof a->y_label, "%s%s", row->y_label,
-             dimension == 2 && row->per_depth ? " per m" : "");
+    write_y_label(a, tr(row->y_label), row->unit, dimension == 2 && row->per_depth);
     a->logarithmic = row->logarithmic;
     for (const curve_row *k = row->curves; k < row->curves + PLOT_CURVES && k->column; k++) {
         int columns[2 + PLOT_SUM] = { table_column(r->table, k->column),
@@ -117,7 +127,7 @@ static int add_panel(picture *p, const rows *r, const panel_row *row, int dimens
         if (dimension == 2 && is_component(k->column) && !has_values(r, columns[0]) &&
             !has_values(r, columns[1])) continue;
         if (k->needs && !has_values(r, table_column(r->table, k->needs))) continue;
-        curve *c = add_curve(a, k->label, r->table->rows);
+        curve *c = add_curve(a, tr(k->label), r->table->rows);
         if (!c) return complain("out of memory");
         c->style = k->style;
         c->colour = k->colour;
@@ -172,8 +182,7 @@ static int draw_rows(plotter *plot, const rows *r, const picture_row *list)
     for (const picture_row *row = list; row->file && code == 0; row++) {
         picture p = { 0 };
         char name[300];
-        snprintf(p.title, sizeof p.title, "%s%s%s", row->title, r->name ? " " : "",
-                 r->name ? r->name : "");
+        snprintf(p.title, sizeof p.title, tr(row->title), r->name);
         snprintf(name, sizeof name, "%s%s%s", r->name ? r->name : "", r->name ? "_" : "", row->file);
         set_time_axis(&p, r->table);
         int drawn = 0;
@@ -210,9 +219,8 @@ static int add_columns(picture *p, const table *t, const char *what, int dimensi
 {
     panel *a = &p->panel[p->panels];
     const size_t length = strlen(what);
-    const char *unit = plot_unit(what, dimension);
     int left_out = 0;
-    snprintf(a->y_label, sizeof a->y_label, "%s%s%s", what, unit[0] ? ", " : "", unit);
+    write_y_label(a, what, plot_unit(what, dimension), 0);
     for (int k = 0; k < t->columns; k++) {
         size_t size = strlen(t->names[k]);
         if (size <= length || t->names[k][size - length - 1] != '_' ||
@@ -240,7 +248,7 @@ static int draw_columns(plotter *plot, const table *t, const columns_row *list)
     int code = 0;
     for (const columns_row *row = list; t->columns > 0 && row->file && code == 0; row++) {
         picture p = { 0 };
-        snprintf(p.title, sizeof p.title, "%s", row->title);
+        snprintf(p.title, sizeof p.title, "%s", tr(row->title));
         for (int k = 0; k < PANEL_LIMIT && row->what[k] && code == 0; k++)
             code = add_columns(&p, t, row->what[k], plot->dimension);
         set_time_axis(&p, t);
@@ -319,13 +327,11 @@ static int draw_comparison(plotter *plot, int index)
         return 0;
     }
     picture p = { .panels = 1 };
-    const char *unit = plot_unit(def->column, plot->dimension);
     snprintf(p.title, sizeof p.title, "%s%s%s", owner, owner[0] ? ": " : "", def->column);
-    snprintf(p.panel[0].y_label, sizeof p.panel[0].y_label, "%s%s%s", def->column,
-             unit[0] ? ", " : "", unit);
+    write_y_label(&p.panel[0], def->column, plot_unit(def->column, plot->dimension), 0);
     snprintf(name, sizeof name, "compare_%.280s", full);
     set_time_axis(&p, r.table);
-    curve *c = add_curve(&p.panel[0], "this run", r.table->rows);
+    curve *c = add_curve(&p.panel[0], tr("this run"), r.table->rows);
     int code = c ? 0 : complain("out of memory");
     if (c) fill_curve(c, &r, &column, 1, NULL);
     for (int k = index; code == 0 && (other = tobi_scene_reference(plot->scene, k)); k++)
@@ -456,6 +462,7 @@ int tobiuo_plot(int argc, char **argv)
 {
     plot_options o = { .format = "svg" };
     plot_files files;
+    choose_language(NULL);
     parse_arguments(&plot_argp, argc, argv, &o);
     const int code = draw_plots(o.dir, o.scene, o.format, &files);
     for (int k = 0; k < files.count && code == 0; k++) printf("%s/%s\n", files.folder, files.name[k]);

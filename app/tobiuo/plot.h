@@ -14,7 +14,8 @@ typedef struct curve_row {
 } curve_row;
 
 typedef struct panel_row {
-    const char *y_label;            /* after scaling                                */
+    const char *y_label;
+    const char *unit;               /* after scaling; ""                            */
     double scale;                   /* of the column, 0 = 1                         */
     int per_depth;                  /* in 2-D the values are per metre of depth     */
     int logarithmic;
@@ -24,7 +25,7 @@ typedef struct panel_row {
 } panel_row;
 
 typedef struct picture_row {
-    const char *file, *title;
+    const char *file, *title;       /* of a body or solid the title has %s for its name */
     int optional;                   /* nothing is said of a picture without values  */
     panel_row panels[PANEL_LIMIT];  /* ended by a row without y_label               */
 } picture_row;

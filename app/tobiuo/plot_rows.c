@@ -1,4 +1,5 @@
 /* The pictures of `tobiuo plot`, as tables. */
+#include "language.h"
 #include "plot.h"
 #include <string.h>
 
@@ -13,58 +14,61 @@ static const char *const others[] = { "elastic_energy", "body_kinetic_energy", "
                                       "spring_energy", NULL };
 
 const picture_row plot_history[] = {
-    { "energies", "Energy of fluids, solids and bodies; change and work since the start", 0, {
-        { "kinetic energy, J", 0, 1, 0, 0, 0,
-          { { "fluids and solids", "kinetic_energy", NULL, CURVE_LINE, 0, NULL, NULL },
-            { "bodies", "body_kinetic_energy", NULL, CURVE_LINE, 1, "body_kinetic_energy", NULL } } },
-        { "change, J", 0, 1, 0, 1, 0,
-          { { "potential", "potential_energy", NULL, CURVE_LINE, 2, NULL, NULL },
-            { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL, NULL },
-            { "elastic", "elastic_energy", NULL, CURVE_LINE, 1, "elastic_energy", NULL },
-            { "lost by solids", "energy_lost", NULL, CURVE_LINE, 3, "elastic_energy", NULL },
-            { "bodies", "body_kinetic_energy", "body_potential_energy", CURVE_LINE, 4,
+    { "energies", TEXT("Energy of fluids, solids and bodies; change and work since the start"), 0, {
+        { TEXT("kinetic energy"), "J", 0, 1, 0, 0, 0,
+          { { TEXT("fluids and solids"), "kinetic_energy", NULL, CURVE_LINE, 0, NULL, NULL },
+            { TEXT("bodies"), "body_kinetic_energy", NULL, CURVE_LINE, 1, "body_kinetic_energy",
+              NULL } } },
+        { TEXT("change"), "J", 0, 1, 0, 1, 0,
+          { { TEXT("potential"), "potential_energy", NULL, CURVE_LINE, 2, NULL, NULL },
+            { TEXT("kinetic"), "kinetic_energy", NULL, CURVE_LINE, 0, NULL, NULL },
+            { TEXT("elastic"), "elastic_energy", NULL, CURVE_LINE, 1, "elastic_energy", NULL },
+            { TEXT("lost by solids"), "energy_lost", NULL, CURVE_LINE, 3, "elastic_energy", NULL },
+            { TEXT("bodies"), "body_kinetic_energy", "body_potential_energy", CURVE_LINE, 4,
               "body_potential_energy", NULL },
-            { "springs", "spring_energy", NULL, CURVE_LINE, 5, "spring_energy", NULL },
-            { "sum of all", "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL,
+            { TEXT("springs"), "spring_energy", NULL, CURVE_LINE, 5, "spring_energy", NULL },
+            { TEXT("sum of all"), "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL,
               others } } },
-        { "work, J", 0, 1, 0, 0, 0,
-          { { "given by motions", "motion_work", NULL, CURVE_LINE, 0, "motion_work", NULL },
-            { "taken by joints", "joint_work", NULL, CURVE_LINE, 1, "joint_work", NULL },
-            { "taken by lines", "line_work", NULL, CURVE_LINE, 2, "line_work", NULL },
-            { "taken by porous zones", "porous_work", NULL, CURVE_LINE, 4, "porous_work", NULL },
-            { "given by forces", "force_work", NULL, CURVE_LINE, 3, "force_work", NULL } } } } },
-    { "work", "Work on solids, and where it goes", 1, {
-        { "work, J", 0, 1, 0, 0, 0,
-          { { "by bodies", "work_bodies", NULL, CURVE_LINE, 7, "work_bodies", NULL },
-            { "fracture", "fracture_work", NULL, CURVE_LINE, 0, "fracture_work", NULL },
-            { "friction", "friction_work", NULL, CURVE_LINE, 1, "friction_work", NULL },
-            { "damping", "damping_work", NULL, CURVE_LINE, 4, "damping_work", NULL },
-            { "plastic", "plastic_work", NULL, CURVE_LINE, 5, "plastic_work", NULL },
-            { "transfer", "transfer_dissipation", NULL, CURVE_LINE, 2, "transfer_dissipation", NULL },
-            { "lost in all", "energy_lost", NULL, CURVE_DASHED, 3, "energy_lost", NULL } } },
-        { "pieces", 0, 0, 0, 0, 0, { { "pieces", "pieces", NULL, CURVE_LINE, 0, "pieces", NULL } } } } },
-    { "walls", "Force of the fluid on the walls of the domain", 0, {
-        { "force, N", 0, 1, 0, 0, 1, XYZ("wall_force") },
-        { "force along gravity / weight", 0, 0, 0, 0, 1,
-          { { "1 = at rest", "wall_force_ratio", NULL, CURVE_LINE, 0, NULL, NULL } } } } },
-    { "incompressibility", "How incompressible the fluid stays", 0, {
-        { "density error, %", 100, 0, 1, 0, 0,
-          { { "largest", "density_error_max", NULL, CURVE_LINE, 1, "density_error_max", NULL },
-            { "mean", "density_error_mean", NULL, CURVE_LINE, 0, "density_error_mean", NULL } } },
-        { "|divergence|, 1/s", 0, 0, 1, 0, 1,
-          { { "largest", "divergence_max", NULL, CURVE_LINE, 1, "divergence_max", NULL },
-            { "mean", "divergence_mean", NULL, CURVE_LINE, 0, "divergence_mean", NULL } } } } },
-    { "solver", "Work of the solver", 0, {
-        { "iterations per step", 0, 0, 0, 0, 1,
-          { { "density solve, mean", "density_iterations_mean", NULL, CURVE_LINE, 0,
+        { TEXT("work"), "J", 0, 1, 0, 0, 0,
+          { { TEXT("given by motions"), "motion_work", NULL, CURVE_LINE, 0, "motion_work", NULL },
+            { TEXT("taken by joints"), "joint_work", NULL, CURVE_LINE, 1, "joint_work", NULL },
+            { TEXT("taken by lines"), "line_work", NULL, CURVE_LINE, 2, "line_work", NULL },
+            { TEXT("taken by porous zones"), "porous_work", NULL, CURVE_LINE, 4, "porous_work", NULL },
+            { TEXT("given by forces"), "force_work", NULL, CURVE_LINE, 3, "force_work", NULL } } } } },
+    { "work", TEXT("Work on solids, and where it goes"), 1, {
+        { TEXT("work"), "J", 0, 1, 0, 0, 0,
+          { { TEXT("by bodies"), "work_bodies", NULL, CURVE_LINE, 7, "work_bodies", NULL },
+            { TEXT("fracture"), "fracture_work", NULL, CURVE_LINE, 0, "fracture_work", NULL },
+            { TEXT("friction"), "friction_work", NULL, CURVE_LINE, 1, "friction_work", NULL },
+            { TEXT("damping"), "damping_work", NULL, CURVE_LINE, 4, "damping_work", NULL },
+            { TEXT("plastic"), "plastic_work", NULL, CURVE_LINE, 5, "plastic_work", NULL },
+            { TEXT("transfer"), "transfer_dissipation", NULL, CURVE_LINE, 2, "transfer_dissipation", NULL },
+            { TEXT("lost in all"), "energy_lost", NULL, CURVE_DASHED, 3, "energy_lost", NULL } } },
+        { TEXT("pieces"), "", 0, 0, 0, 0, 0,
+          { { TEXT("pieces"), "pieces", NULL, CURVE_LINE, 0, "pieces", NULL } } } } },
+    { "walls", TEXT("Force of the fluid on the walls of the domain"), 0, {
+        { TEXT("force"), "N", 0, 1, 0, 0, 1, XYZ("wall_force") },
+        { TEXT("force along gravity / weight"), "", 0, 0, 0, 0, 1,
+          { { TEXT("1 = at rest"), "wall_force_ratio", NULL, CURVE_LINE, 0, NULL, NULL } } } } },
+    { "incompressibility", TEXT("How incompressible the fluid stays"), 0, {
+        { TEXT("density error"), "%", 100, 0, 1, 0, 0,
+          { { TEXT("largest"), "density_error_max", NULL, CURVE_LINE, 1, "density_error_max", NULL },
+            { TEXT("mean"), "density_error_mean", NULL, CURVE_LINE, 0, "density_error_mean", NULL } } },
+        { TEXT("|divergence|"), "1/s", 0, 0, 1, 0, 1,
+          { { TEXT("largest"), "divergence_max", NULL, CURVE_LINE, 1, "divergence_max", NULL },
+            { TEXT("mean"), "divergence_mean", NULL, CURVE_LINE, 0, "divergence_mean", NULL } } } } },
+    { "solver", TEXT("Work of the solver"), 0, {
+        { TEXT("iterations per step"), "", 0, 0, 0, 0, 1,
+          { { TEXT("density solve, mean"), "density_iterations_mean", NULL, CURVE_LINE, 0,
              "density_iterations_mean", NULL },
-            { "divergence solve, mean", "divergence_iterations_mean", NULL, CURVE_LINE, 1,
+            { TEXT("divergence solve, mean"), "divergence_iterations_mean", NULL, CURVE_LINE, 1,
              "divergence_iterations_mean", NULL },
-            { "steps not converged", "unconverged_steps", NULL, CURVE_DASHED, 7,
+            { TEXT("steps not converged"), "unconverged_steps", NULL, CURVE_DASHED, 7,
               "unconverged_steps", NULL } } },
-        { "time step, ms", 1e3, 0, 0, 0, 1, { { "time step", "dt", NULL, CURVE_LINE, 2, NULL, NULL } } },
-        { "speed, m/s", 0, 0, 0, 0, 0,
-          { { "fastest particle", "speed_max", NULL, CURVE_LINE, 3, NULL, NULL } } } } },
+        { TEXT("time step"), "ms", 1e3, 0, 0, 0, 1,
+          { { TEXT("time step"), "dt", NULL, CURVE_LINE, 2, NULL, NULL } } },
+        { TEXT("speed"), "m/s", 0, 0, 0, 0, 0,
+          { { TEXT("fastest particle"), "speed_max", NULL, CURVE_LINE, 3, NULL, NULL } } } } },
     { 0 }
 };
 
@@ -75,72 +79,72 @@ const picture_row plot_history[] = {
 #define PART(label, part, noun, axis, style, colour)                                             \
     { label, "mean_" part "_" noun "_" axis, NULL, style, colour, "mean_viscous_" noun "_" axis, NULL }
 #define PARTS(noun, axis, unit, ...)                                                             \
-    { axis ", " unit, 0, 1, 0, 0, 1,                                                             \
-      { SUM("sum, last step", "", noun, axis, CURVE_THIN, 6),                                    \
-        SUM("sum, mean", "mean_", noun, axis, CURVE_LINE, 7),                                    \
-        PART("pressure, mean", "pressure", noun, axis, CURVE_DASHED, 0),                         \
-        PART("viscous, mean", "viscous", noun, axis, CURVE_LINE, 1), __VA_ARGS__ } }
+    { axis, unit, 0, 1, 0, 0, 1,                                                                 \
+      { SUM(TEXT("sum, last step"), "", noun, axis, CURVE_THIN, 6),                              \
+        SUM(TEXT("sum, mean"), "mean_", noun, axis, CURVE_LINE, 7),                              \
+        PART(TEXT("pressure, mean"), "pressure", noun, axis, CURVE_DASHED, 0),                   \
+        PART(TEXT("viscous, mean"), "viscous", noun, axis, CURVE_LINE, 1), __VA_ARGS__ } }
 /* What a blade's edge takes, a part of the pressure. */
 #define EDGE(axis)                                                                               \
-    { "edge, mean", "mean_edge_force_" axis, NULL, CURVE_LINE, 3, "mean_edge_force_" axis, NULL }
+    { TEXT("edge, mean"), "mean_edge_force_" axis, NULL, CURVE_LINE, 3, "mean_edge_force_" axis, NULL }
 
 /* One panel of what bodies and sides that touch a body do. */
 #define MET(label, when, noun, axis, style, colour)                                              \
     { label, when "contact_" noun "_" axis, NULL, style, colour, "mean_contact_" noun "_" axis, NULL }
 #define TOUCH(noun, axis, unit)                                                                  \
-    { axis ", " unit, 0, 1, 0, 0, 1,                                                             \
-      { MET("last step", "", noun, axis, CURVE_THIN, 6),                                         \
-        MET("mean", "mean_", noun, axis, CURVE_LINE, 7) } }
+    { axis, unit, 0, 1, 0, 0, 1,                                                                 \
+      { MET(TEXT("last step"), "", noun, axis, CURVE_THIN, 6),                                   \
+        MET(TEXT("mean"), "mean_", noun, axis, CURVE_LINE, 7) } }
 
 const picture_row plot_body[] = {
-    { "motion", "Motion of", 0, {
-        { "shift since the start, m", 0, 0, 0, 1, 0, XYZ("position") },
-        { "velocity, m/s", 0, 0, 0, 0, 0, XYZ("velocity") },
-        { "angular velocity, rad/s", 0, 0, 0, 0, 0, XYZ("angular_velocity") } } },
-    { "force", "Force of the particles on", 0, {
+    { "motion", TEXT("Motion of %s"), 0, {
+        { TEXT("shift since the start"), "m", 0, 0, 0, 1, 0, XYZ("position") },
+        { TEXT("velocity"), "m/s", 0, 0, 0, 0, 0, XYZ("velocity") },
+        { TEXT("angular velocity"), "rad/s", 0, 0, 0, 0, 0, XYZ("angular_velocity") } } },
+    { "force", TEXT("Force of the particles on %s"), 0, {
         PARTS("force", "x", "N", EDGE("x")), PARTS("force", "y", "N", EDGE("y")),
         PARTS("force", "z", "N", EDGE("z")) } },
-    { "torque", "Torque of the particles about the centre of mass of", 0, {
+    { "torque", TEXT("Torque of the particles about the centre of mass of %s"), 0, {
         PARTS("torque", "x", "N m", { 0 }), PARTS("torque", "y", "N m", { 0 }),
         PARTS("torque", "z", "N m", { 0 }) } },
-    { "contact_force", "Force of bodies and sides on", 1, {
+    { "contact_force", TEXT("Force of bodies and sides on %s"), 1, {
         TOUCH("force", "x", "N"), TOUCH("force", "y", "N"), TOUCH("force", "z", "N") } },
-    { "contact_torque", "Torque of bodies and sides about the centre of mass of", 1, {
+    { "contact_torque", TEXT("Torque of bodies and sides about the centre of mass of %s"), 1, {
         TOUCH("torque", "x", "N m"), TOUCH("torque", "y", "N m"), TOUCH("torque", "z", "N m") } },
     { 0 }
 };
 
 const picture_row plot_solid[] = {
-    { "solid_motion", "Motion of", 0, {
-        { "position, m", 0, 0, 0, 0, 0, XYZ("position") },
-        { "velocity, m/s", 0, 0, 0, 0, 0, XYZ("velocity") } } },
-    { "liquid_force", "Force of the liquids on", 0, {
-        { "mean force, N", 0, 1, 0, 0, 1, XYZ("mean_liquid_force") } } },
+    { "solid_motion", TEXT("Motion of %s"), 0, {
+        { TEXT("position"), "m", 0, 0, 0, 0, 0, XYZ("position") },
+        { TEXT("velocity"), "m/s", 0, 0, 0, 0, 0, XYZ("velocity") } } },
+    { "liquid_force", TEXT("Force of the liquids on %s"), 0, {
+        { TEXT("mean force"), "N", 0, 1, 0, 0, 1, XYZ("mean_liquid_force") } } },
     { 0 }
 };
 
 const columns_row plot_probes[] = {
-    { "probes_pressure", "Pressure at the probes", { "pressure" } },
-    { "probes_velocity", "Velocity at the probes", { "velocity_x", "velocity_y", "velocity_z" } },
-    { "probes_force", "Force on the probes", { "force_x", "force_y", "force_z" } },
-    { "probes_moment", "Moment on the probes", { "moment_x", "moment_y", "moment_z" } },
-    { "probes_level", "Level of the fluid at the probes", { "level" } },
-    { "probes_run_up", "Run-up at the probes", { "run_up" } },
-    { "probes_flow", "Flow through the probes", { "flow" } },
-    { "probes_volume", "Volume in the probes", { "volume" } },
+    { "probes_pressure", TEXT("Pressure at the probes"), { "pressure" } },
+    { "probes_velocity", TEXT("Velocity at the probes"), { "velocity_x", "velocity_y", "velocity_z" } },
+    { "probes_force", TEXT("Force on the probes"), { "force_x", "force_y", "force_z" } },
+    { "probes_moment", TEXT("Moment on the probes"), { "moment_x", "moment_y", "moment_z" } },
+    { "probes_level", TEXT("Level of the fluid at the probes"), { "level" } },
+    { "probes_run_up", TEXT("Run-up at the probes"), { "run_up" } },
+    { "probes_flow", TEXT("Flow through the probes"), { "flow" } },
+    { "probes_volume", TEXT("Volume in the probes"), { "volume" } },
     { 0 }
 };
 
 const columns_row plot_lines[] = {
-    { "lines", "Lines", { "tension", "distance" } },
+    { "lines", TEXT("Lines"), { "tension", "distance" } },
     { 0 }
 };
 
 const columns_row plot_joints[] = {
-    { "joints_force", "Force of the joints", { "force_x", "force_y", "force_z" } },
-    { "joints_moment", "Moment of the joints", { "moment_x", "moment_y", "moment_z" } },
-    { "joints_angle", "Angle and gap of the joints", { "angle", "gap" } },
-    { "joints_power", "Motors and dampers of the joints", { "motor_torque", "motor_force", "power" } },
+    { "joints_force", TEXT("Force of the joints"), { "force_x", "force_y", "force_z" } },
+    { "joints_moment", TEXT("Moment of the joints"), { "moment_x", "moment_y", "moment_z" } },
+    { "joints_angle", TEXT("Angle and gap of the joints"), { "angle", "gap" } },
+    { "joints_power", TEXT("Motors and dampers of the joints"), { "motor_torque", "motor_force", "power" } },
     { 0 }
 };
 
@@ -152,7 +156,8 @@ const char *plot_unit(const char *column, int dimension)
         { "velocity", "m/s", "m/s" }, { "speed", "m/s", "m/s" }, { "position", "m", "m" },
         { "torque", "N m", "N m per m" }, { "force", "N", "N per m" }, { "weight", "N", "N per m" },
         { "pressure", "Pa", "Pa" }, { "level", "m", "m" }, { "run_up", "m", "m" }, { "distance", "m", "m" },
-        { "moment_", "N m", "N m per m" }, { "flow", "m3/s", "m2/s" }, { "_volume", "m3", "m2" },
+        { "moment_", "N m", "N m per m" }, { "flow", "m3/s", "m2/s" }, { "volume_drift", "", "" },
+        { "volume", "m3", "m2" },
         { "power", "W", "W per m" },
         { "energy", "J", "J per m" }, { "work", "J", "J per m" }, { "dissipation", "J", "J per m" },
         { "momentum", "kg m/s", "kg m/s per m" }, { "tension", "N", "N per m" },

@@ -11,13 +11,12 @@
 
 typedef struct report_options { const char *dir, *out; double from; int force; } report_options;
 
-enum { KEY_FORCE = KEY_OWN, KEY_FROM, KEY_LANGUAGE };
+enum { KEY_FORCE = KEY_OWN, KEY_FROM };
 
 static const struct argp_option options[] = {
     { "out", 'o', "FILE", 0, "the page (DIR/report.html)", 0 },
     { "from", KEY_FROM, "S", 0, "means, least and most of the tables begin at this time, s (0)", 0 },
-    { "language", KEY_LANGUAGE, "LANGUAGE", 0,
-      "ja (Japanese) or en (English); by default as LC_ALL, LC_MESSAGES or LANG says", 0 },
+    LANGUAGE_OPTION,
     { "force", KEY_FORCE, NULL, 0, "replace FILE", 0 },
     { 0 }
 };
@@ -31,10 +30,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
         o->out = value;
         break;
     case KEY_FROM: o->from = parse_positive(state, "--from", value); break;
-    case KEY_LANGUAGE:
-        if (choose_language(value) != 0)
-            argp_error(state, "--language: '%s' is neither ja nor en", value);
-        break;
+    case KEY_LANGUAGE: parse_language(state, value); break;
     case KEY_FORCE: o->force = 1; break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }

@@ -7,6 +7,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
 export OMP_WAIT_POLICY=passive
+export LC_ALL=C.UTF-8       # pages and plots in English; report_japanese.py is of the other language
 passed=0 failed=0
 
 ok() { passed=$((passed + 1)); }

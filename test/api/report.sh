@@ -4,7 +4,6 @@
 # Answers 77 (skipped) without chromium, gnuplot or ffmpeg, after the tests that do without them.
 set -uo pipefail
 . "$(dirname "$0")/checks.sh" "$1"
-export LC_ALL=C.UTF-8       # report_japanese.py is of the other language
 
 cat > box.obj <<'END'
 v -0.1 -0.1 -0.1

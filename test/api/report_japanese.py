@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tobiuo report in Japanese: the page has what the English one has, and no English is left on it.
+"""tobiuo report and plot in Japanese: the page has what the English one has, and no English is left on it and in plots.
 
 usage: report_japanese.py PROGRAM     works in a fresh folder that it removes; without gnuplot and ffmpeg
 """
@@ -13,6 +13,8 @@ import sys
 import tempfile
 
 ENGLISH = re.compile(r"[A-Za-z]{2,}(?:[ ,.;:]+[A-Za-z]+){2,}")      # three words
+PLOT_ENGLISH = re.compile(r"[A-Za-z]{2,}[ ,]+[A-Za-z]{2,}")         # names of columns are one word
+PLOT_TEXT = re.compile(r'(?:title|set [xy]label) "(.*)"')
 NUMBER = re.compile(r"-?\d[-+.e\d]*")
 OPTIONAL_END = {"tr", "td", "th", "p"}
 VOID = {"meta", "img", "br"}
@@ -74,6 +76,12 @@ def english_of(page):
     return [found.group() for text in page.texts for found in ENGLISH.finditer(text)]
 
 
+def english_of_plots(folder):
+    """Of all titles and labels: gnuplot is not there, but its script is."""
+    texts = PLOT_TEXT.findall(pathlib.Path(folder, "plots", "plots.gnuplot").read_text(encoding="utf-8"))
+    return [text for text in texts if PLOT_ENGLISH.search(text)]
+
+
 def run(program, *arguments, **variables):
     """What it answers; variables: those of the language."""
     others = {k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG")) and k != "PATH"}
@@ -93,7 +101,9 @@ def check_pages(program, name, scene):
     assert done.returncode == 0, done.stderr.decode()
     for more in ([], ["--from", str(scene["end_time"]/2)]):
         english = page_of(program, name, "--language", "en", *more)
+        assert len(english_of_plots(name)) > 10, english_of_plots(name)
         japanese = page_of(program, name, "--language", "ja", *more)
+        assert not english_of_plots(name), english_of_plots(name)
         assert (english.language, japanese.language) == ("en", "ja")
         assert len(english_of(english)) > 20, english_of(english)
         assert not english_of(japanese), english_of(japanese)
@@ -110,8 +120,10 @@ def check_choice(program, folder):
             (["--language", "en"], {"LC_ALL": "ja_JP.UTF-8"}, "en"), (["--language", "ja"], {"LC_ALL": "C"}, "ja")]:
         found = page_of(program, folder, *arguments, **variables).language
         assert found == language, (arguments, variables, found)
-    for bad in ("fr", "", "japanese"):
-        done = run(program, "report", folder, "--language", bad)
+        run(program, "plot", folder, *arguments, **variables)
+        assert bool(english_of_plots(folder)) == (language == "en"), (arguments, variables)
+    for command, bad in (("report", "fr"), ("report", ""), ("report", "japanese"), ("plot", "fr")):
+        done = run(program, command, folder, "--language", bad)
         assert done.returncode == 2 and f"--language: '{bad}' is neither ja nor en".encode() in done.stderr, done.stderr
 
 
