@@ -2,6 +2,7 @@
    sooner, and the checkpoint has the step before. A second one ends the program at once, which costs nothing
    but the time since the last checkpoint. So does one before the first step. */
 #include "app.h"
+#include "language.h"
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -61,10 +62,11 @@ static void print_end(const drive_options *o, watch *w, const tobi_world *world,
     watch_say(w, world);
     if (*lost && !(o->told && strcmp(lost, o->told) == 0)) complain("results in %s: %s", o->dir, lost);
     if (o->quiet) return;
-    printf("%s at t = %.9g s after %lld steps in %s; results in %s\n", done ? "done" : "stopped",
+    printf(done ? tr("done at t = %.9g s after %lld steps in %s; results in %s\n") :
+                  tr("stopped at t = %.9g s after %lld steps in %s; results in %s\n"),
            tobi_world_time(world), (long long)w->steps, duration_text(wall, text), o->dir);
     char quoted[SHELL_WORD];
-    if (!done) printf("go on with: tobiuo resume %s\n", shell_word(o->dir, quoted));
+    if (!done) printf(tr("go on with: tobiuo resume %s\n"), shell_word(o->dir, quoted));
 }
 
 static int end_run(const tobi_world *world, tobi_run *run, const drive_options *o, watch *w,
@@ -93,7 +95,7 @@ static int end_failed_run(const tobi_world *world, tobi_run *run, const drive_op
         tobi_run_output_end(run, &more);
     tobi_run_finish(run, status == TOBI_DIVERGED ? "diverged" : status == TOBI_STALLED ? "stalled" : "failed",
                     &more);
-    return complain("the results up to t = %.9g s are in %s", tobi_world_time(world), o->dir);
+    return complain(tr("the results up to t = %.9g s are in %s"), tobi_world_time(world), o->dir);
 }
 
 int drive(tobi_world *world, tobi_run *run, const drive_options *o)

@@ -1,6 +1,7 @@
 /* tobiuo resume DIR */
 #define _GNU_SOURCE
 #include "app.h"
+#include "language.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,7 @@ static const struct argp_option options[] = {
     { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s (that of the run before)", 0 },
     { "threads", 't', "N", 0, "threads (0 = all cores)", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
+    LANGUAGE_OPTION,
     { 0 }
 };
 
@@ -25,6 +27,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case 't': overrides_add(&o->set, "threads=%d", parse_threads(state, value)); break;
     case 'q': o->quiet = 1; break;
+    case KEY_LANGUAGE: parse_language(state, value); break;
     case KEY_UNTIL: overrides_add(&o->set, "end_time=%.17g", parse_positive(state, "--until", value)); break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
@@ -64,6 +67,7 @@ const struct argp resume_argp = { .options = options, .parser = parse, .args_doc
 int tobiuo_resume(int argc, char **argv)
 {
     resume_options o = { 0 };
+    choose_language(NULL);
     parse_arguments(&resume_argp, argc, argv, &o);
     char *path = NULL;
     if (asprintf(&path, "%s/resolved.json", o.dir) < 0) return complain("out of memory");

@@ -1,6 +1,7 @@
 /* tobiuo run SCENE */
 #define _GNU_SOURCE
 #include "app.h"
+#include "language.h"
 #include "view.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,6 +32,7 @@ static const struct argp_option options[] = {
     { "window", KEY_WINDOW, NULL, 0, "watch the run in a window; the key h lists its keys", 0 },
     { "keys", KEY_KEYS, "LETTERS", 0, "keys typed into the window at the start", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
+    LANGUAGE_OPTION,
     { 0 }
 };
 
@@ -44,6 +46,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
         break;
     case 't': overrides_add(&o->set, "threads=%d", parse_threads(state, value)); break;
     case 'q': o->quiet = 1; break;
+    case KEY_LANGUAGE: parse_language(state, value); break;
     case KEY_FRAMES: overrides_add(&o->set, "output.frames=true"); break;
     case KEY_MOVIE:
         if (movie_objection(value)) argp_error(state, "--movie: '%s' %s", value, movie_objection(value));
@@ -91,7 +94,7 @@ static int check_size(const tobi_scene *scene, tobi_world *world, const run_opti
 static void print_size(const tobi_run_size *size, const char *dir)
 {
     char bytes[32];
-    printf("%lld outputs, about %s in %.7g files, go to %s\n", (long long)size->outputs,
+    printf(tr("%lld outputs, about %s in %.7g files, go to %s\n"), (long long)size->outputs,
            bytes_text(size->bytes, bytes), size->files, dir);
 }
 
@@ -183,6 +186,7 @@ const struct argp run_argp = { .options = options, .parser = parse, .args_doc = 
 int tobiuo_run(int argc, char **argv)
 {
     run_options o = { 0 };
+    choose_language(NULL);
     parse_arguments(&run_argp, argc, argv, &o);
     tobi_scene *scene = load_scene(o.scene, &o.set);
     int code = scene ? run_scene(scene, &o) : EXIT_ERROR;

@@ -2,6 +2,7 @@
    is none any more, energy from nothing, forces that jump from step to step. Drawback: a resumed run knows
    only its own steps. */
 #include "app.h"
+#include "language.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,14 +75,14 @@ tobi_status watch_step(watch *w, const tobi_world *world, const tobi_step_info *
 static void say_liquid(const watch *w)
 {
     if (w->last.density_error_mean > WRONG_DENSITY)
-        complain("at the end the density of particles is off by %.1f %% on average (density_error_mean in "
-                 "history.csv): the liquid has cavities or is compressed, or its layers did not "
-                 "fit (tobiuo check)",
+        complain(tr("at the end the density of particles is off by %.1f %% on average "
+                    "(density_error_mean in history.csv): the liquid has cavities or is compressed, "
+                    "or its layers did not fit (tobiuo check)"),
                  100*w->last.density_error_mean);
     if (w->last.surface_share > COME_APART && w->last.surface_share > 2*w->surface_start)
-        complain("at the end %.0f %% of the particles are at a free surface (surface_share in history.csv; "
-                 "%.0f %% at the start): the liquid has come apart into drops and films that the spacing "
-                 "does not resolve",
+        complain(tr("at the end %.0f %% of the particles are at a free surface (surface_share in "
+                    "history.csv; %.0f %% at the start): the liquid has come apart into drops and "
+                    "films that the spacing does not resolve"),
                  100*w->last.surface_share, 100*w->surface_start);
 }
 
@@ -90,32 +91,32 @@ static void say_energy(watch *w, const tobi_world *world)
     const tobi_step_info *end = tobi_world_info(world);
     watch_energy(w, end, end->time);
     if (!energy_gained(&w->energy)) return;
-    complain("by t = %g s liquid and solids have gained %.3g J from nothing, beside %.3g J that they had at "
-             "the start (kinetic, potential and elastic energy in history.csv); shorter time steps (cfl, "
-             "time_step) may help",
+    complain(tr("by t = %g s liquid and solids have gained %.3g J from nothing, beside %.3g J that "
+                "they had at the start (kinetic, potential and elastic energy in history.csv); "
+                "shorter time steps (cfl, time_step) may help"),
              w->energy.time, w->energy.gain, w->energy.start);
 }
 
 void watch_say(watch *w, const tobi_world *world)
 {
     if (w->unconverged)
-        complain("the solver did not converge in %lld of %lld steps; the worst was at t = %g s, with a "
-                 "residual of %.3g after %d iterations (unconverged_steps and pressure_residual_max in "
-                 "history.csv)",
+        complain(tr("the solver did not converge in %lld of %lld steps; the worst was at t = %g s, "
+                    "with a residual of %.3g after %d iterations (unconverged_steps and "
+                    "pressure_residual_max in history.csv)"),
                  (long long)w->unconverged, (long long)w->steps, w->worst.time, w->worst.pressure_residual,
                  w->worst.density_iterations + w->worst.divergence_iterations);
     say_energy(w, world);
     say_liquid(w);
     if (w->last.particles_lost)
-        complain("%lld particles left the domain", (long long)w->last.particles_lost);
+        complain(tr("%lld particles left the domain"), (long long)w->last.particles_lost);
     if (w->last.put_back)
-        complain("particles got past a side of the domain and were put back to it %lld times (put_back in "
-                 "history.csv); mlsmpm.leaving says what becomes of them",
+        complain(tr("particles got past a side of the domain and were put back to it %lld times "
+                    "(put_back in history.csv); mlsmpm.leaving says what becomes of them"),
                  (long long)w->last.put_back);
     for (int k = 0; k < w->body_count && w->last.surface_share > 0; k++)
         if (w->body[k].steps > ENOUGH_STEPS && w->body[k].noise > ROUGH_FORCE*w->body[k].force)
-            complain("the pressure force on '%s' scatters by %.0f %% from step to step; its means over an "
-                     "output (mean_pressure_force in bodies.csv) are smoother, and so are forces with a "
-                     "cfl of 0.1",
+            complain(tr("the pressure force on '%s' scatters by %.0f %% from step to step; its means "
+                        "over an output (mean_pressure_force in bodies.csv) are smoother, and so are "
+                        "forces with a cfl of 0.1"),
                      tobi_world_body_name(world, k), 100*w->body[k].noise/w->body[k].force);
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tobiuo report and plot in Japanese: the page has what the English one has, and no English is left on it and in plots.
+"""tobiuo report, plot and run in Japanese: the page has what the English one has, and nothing is left in English.
 
 usage: report_japanese.py PROGRAM     works in a fresh folder that it removes; without gnuplot and ffmpeg
 """
@@ -127,6 +127,24 @@ def check_choice(program, folder):
         assert done.returncode == 2 and f"--language: '{bad}' is neither ja nor en".encode() in done.stderr, done.stderr
 
 
+def check_end_of_run(program):
+    """The warnings and the line at the end; what else is said is English."""
+    hard = ["run", "tank.json", "--out", "hard", "--force", "--set", "dfsph.density_iterations_max=2"]
+    for arguments, variables, language in [([], {}, "en"), ([], {"LANG": "ja_JP.UTF-8"}, "ja"),
+                                           (["--language", "en"], {"LANG": "ja_JP.UTF-8"}, "en")]:
+        done = run(program, *hard, *arguments, OMP_WAIT_POLICY="passive", **variables)
+        said = (done.stdout + done.stderr).decode()
+        want = {"en": ["the solver did not converge in", "done at t = 0.06 s"],
+                "ja": ["反復解法が", "計算終了：t = 0.06 s"]}
+        assert done.returncode == 0 and all(text in said for text in want[language]), said
+        assert (language == "ja") == (not ENGLISH.search(said)), said
+    done = run(program, "resume", "hard", "--until", "0.08", "--language", "ja")
+    assert done.returncode == 0 and "計算終了：t = 0.08 s" in done.stdout.decode(), done.stdout.decode()
+    for arguments in (["run", "tank.json"], ["resume", "hard"]):
+        done = run(program, *arguments, "--language", "fr")
+        assert done.returncode == 2 and b"--language: 'fr' is neither ja nor en" in done.stderr, done.stderr
+
+
 def main(program):
     program = os.path.realpath(program)
     assert english_of(Page("<p>The run ended.")) and not english_of(Page("<p>dfsph、<code>a run ended</code> box & co"))
@@ -135,6 +153,7 @@ def main(program):
         for name, scene in (("tank", TANK), ("barge", BARGE), ("jelly", JELLY)):
             check_pages(program, name, scene)
         check_choice(program, "jelly")
+        check_end_of_run(program)
         os.chdir("/")
     print("all pages are Japanese")
 
