@@ -35,7 +35,7 @@ typedef struct table {
     char separator[2];
     int field[WIDEST];              /* of the line; -1: not yet known */
     double scale[WIDEST];
-    int width;
+    int width, fields;              /* coordinates; fields of the first line */
 } table;
 
 /* The next field without blanks and quotes around it; NULL at the end. */
@@ -69,6 +69,7 @@ static tobi_status read_header(table *t, char *line, tobi_error *err)
     char *rest = line, *field;
     for (int k = 0; (field = next_field(t, &rest)); k++) {
         const double scale = take_unit(field);
+        t->fields = k + 1;
         for (int a = 0; a < t->width; a++) {
             const char name[2] = { t->names[a], '\0' };
             if (strcasecmp(field, name) != 0) continue;
@@ -83,9 +84,9 @@ static tobi_status read_header(table *t, char *line, tobi_error *err)
     }
     for (int a = 0; a < t->width; a++)
         if (t->field[a] < 0)
-            return tobi_fail(err, TOBI_INVALID, "%s:%lld: the first line names no column %c; it must name %s",
-                             t->path, t->line, t->names[a],
-                             t->width == 3 ? "x, y and z" : "both coordinates");
+            return tobi_fail(err, TOBI_INVALID, "%s:%lld: the first line names no column %c; it must name "
+                             "%s%c and %c", t->path, t->line, t->names[a], t->width == 3 ? "x, " : "",
+                             t->names[t->width - 2], t->names[t->width - 1]);
     return TOBI_OK;
 }
 
@@ -93,7 +94,10 @@ static tobi_status read_row(table *t, char *line, int64_t most, tobi_points *out
 {
     char *rest = line, *field;
     double v[WIDEST] = { NAN, NAN, NAN };
-    for (int k = 0; (field = next_field(t, &rest)); k++)
+    for (int k = 0; (field = next_field(t, &rest)); k++) {
+        if (k >= t->fields && *field)
+            return tobi_fail(err, TOBI_INVALID, "%s:%lld: the row has more than the %d columns of the first "
+                             "line; is a comma a decimal mark there?", t->path, t->line, t->fields);
         for (int a = 0; a < t->width; a++) {
             char *end;
             if (k != t->field[a]) continue;
@@ -102,6 +106,7 @@ static tobi_status read_row(table *t, char *line, int64_t most, tobi_points *out
                 return tobi_fail(err, TOBI_INVALID, "%s:%lld: \"%s\" is no finite number", t->path, t->line,
                                  tobi_excerpt(field).text);
         }
+    }
     for (int a = 0; a < t->width; a++)
         if (isnan(v[a]))
             return tobi_fail(err, TOBI_INVALID, "%s:%lld: the row has fewer columns than the first line",

@@ -42,7 +42,8 @@ static tobi_status read_head(FILE *file, const char *path, head *h, tobi_error *
         if (end > word && *end == '\0') return fseek(file, at, SEEK_SET) == 0 ? TOBI_OK : TOBI_IO;
         int key = 0;
         while (key < KEYS && strcasecmp(word, keys[key]) != 0) key++;
-        if (key == KEYS || fscanf(file, "%lf", &h->value[key]) != 1 || !isfinite(h->value[key]))
+        if (key == KEYS || fscanf(file, "%lf", &h->value[key]) != 1 ||
+            (key != NO_DATA && !isfinite(h->value[key])))
             return tobi_fail(err, TOBI_INVALID, "%s: \"%s\" is no key of an ESRI ASCII grid with its number",
                              path, tobi_excerpt(word).text);
         h->given[key] = 1;
@@ -88,6 +89,10 @@ static tobi_status read_heights(FILE *file, const char *path, const head *h, tob
                                  "cut the grid", path, (long long)(t->ny - 1 - j), (long long)i, z);
             t->z[j*t->nx + i] = z;
         }
+    char more[2];
+    if (fscanf(file, "%1s", more) == 1)
+        return tobi_fail(err, TOBI_INVALID, "%s: more follows after the %g times %g heights of ncols and "
+                         "nrows", path, h->value[COLUMNS], h->value[ROWS]);
     for (int64_t j = 0; j < t->ny; j++)
         for (int64_t i = 0; i < t->nx; i++) {
             const int64_t row = j == 0 ? 1 : j == t->ny - 1 ? j - 1 : j;
@@ -176,13 +181,17 @@ static tobi_status read_table(const char *path, tobi_terrain *t, tobi_error *err
 
 tobi_status tobi_terrain_read(const char *path, tobi_terrain *out, tobi_error *err)
 {
-    char word[8] = "";
+    static const char mark[] = "\xef\xbb\xbf";      /* of UTF-8, as Windows writes */
+    char word[16] = "";
     *out = (tobi_terrain){ 0 };
     FILE *file = fopen(path, "r");
     if (!file)
         return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "%s: %s", path, strerror(errno));
-    const int esri = fscanf(file, "%7s", word) == 1 && strcasecmp(word, keys[COLUMNS]) == 0;
-    rewind(file);
+    int esri = 0;
+    const int words = fscanf(file, "%15s", word);
+    const int marked = strncmp(word, mark, strlen(mark)) == 0;
+    for (int k = 0; k < KEYS && words == 1; k++) esri |= strcasecmp(word + 3*marked, keys[k]) == 0;
+    if (fseek(file, 3*marked, SEEK_SET) != 0) rewind(file);
     const tobi_status status = esri ? read_esri(file, path, out, err) : TOBI_OK;
     fclose(file);
     return esri ? status : read_table(path, out, err);

@@ -208,10 +208,11 @@ static void wrong_tables_are_refused(void **state)
     (void)state;
     static const struct { const char *table, *why; } cases[] = {
         { "", "is empty" },
-        { "x,y\n0,0\n", "1: the first line names no column z; it must name both coordinates" },
+        { "x,y\n0,0\n", "1: the first line names no column z; it must name x and z" },
         { "x [ft],z\n0,0\n", "1: the unit of column x is not known; allowed are [m], [cm], [mm] or none" },
         { "x,z,x\n0,0,0\n", "1: column x is there twice" },
         { "x,z\n0,0\n1,high\n", "3: \"high\" is no finite number" },
+        { "x,z\n0,0,,\n0,5,1,5\n", "3: the row has more than the 2 columns of the first line; is a comma" },
         { "x,z\n0\n", "2: the row has fewer columns than the first line" },
     };
     tobi_error err;

@@ -46,6 +46,9 @@ static void grids_have_their_volume(void **state)
     expect("ncols 2\nnrows 1\nxllcorner 0.5\nyllcorner 1\ncellsize 0.5\nNODATA_value -9999\n0.5 0.5\n", 0,
            0.25, 1, 1.25);
     expect("NCOLS 1\nNROWS 2\nXLLCENTER 1\nYLLCENTER 1\nCELLSIZE 1\n0.5\n0.5\n", 0.25, 0.5, 1, 1.5);
+    /* a mark of UTF-8, keys in another order, no data as GDAL writes it for some */
+    expect("\xef\xbb\xbfnrows 2\r\nncols 1\r\ncellsize 1\r\nxllcenter 1\r\nyllcenter 1\r\n"
+           "NODATA_value nan\r\n0.5\r\n0.5\r\n", 0.25, 0.5, 1, 1.5);
     /* levels 3 in the north, 1 in the south: 2 x 4 m, with level strips of half a cell at both ends */
     tobi_error err;
     tobi_body_info info;
@@ -81,6 +84,7 @@ static void wrong_files_are_refused(void **state)
     refused("ncols 1e4\nnrows 1e4\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 1\n", "and 4000000 heights");
     refused("ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 0\n1 1\n",
             "cellsize is 0, must be above 0");
+    refused(HEAD "1 1\n1 1\n1 1\n", "more follows after the 2 times 2 heights of ncols and nrows");
     refused(HEAD "1 1\n1\n", "row 2, column 2 holds no height");
     refused(HEAD "1 high\n1 1\n", "row 1, column 2 holds no height");
     refused(HEAD "1 1\n-9999 1\n", "row 2, column 1 has no data (-9999)");
@@ -88,6 +92,7 @@ static void wrong_files_are_refused(void **state)
     refused(HEAD "1 1\n1 0\n",
             "its terrain is 0 m high at x = 1.5, y = 0 m, which is not above its base, 0 m");
     refused("x,y,z\n0,0,1\n1,0,1\n0,1,1\n", "3 points are no lattice: x has 2 different values and y 2");
+    refused("x,y,z\n0,0,1,5\n1,0,1,5\n0,1,1,5\n1,1,1,5\n", "2: the row has more than the 3 columns");
     refused("x,y,z\n0,0,1\n1,0,1\n", "2 points are no lattice");
     refused("x,y,z\n0,0,1\n1,0,1\n0,1,1\n0,1,1\n", "the point x = 0, y = 1 m is there twice");
     refused("x,y\n0,0\n", "names no column z; it must name x, y and z");
