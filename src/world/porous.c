@@ -12,6 +12,10 @@
 /* Stones that fill less of a zone leave its porosity out of account at little price. */
 static const double OPEN_ENOUGH = 0.8;
 
+/* 1/s and 1/m: a step of a stronger drag leaves less of a velocity than single precision keeps of it, and
+   force and work, which are that rest times the drag, would be noise. */
+static const double STRONGEST = 1e7;
+
 #define REFUSE(key, ...) return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, __VA_ARGS__), "%s", key)
 
 static tobi_status place(const tobi_world *w, const tobi_porous_def *def, tobi_porous *z, tobi_error *err)
@@ -92,6 +96,18 @@ static void resist(const tobi_porous_def *d, tobi_porous *z, double across)
     z->quadratic = d->quadratic_coefficient*solid/(n3*d->stone_size);
 }
 
+static tobi_status check_drag(const tobi_world *w, const char *name, const tobi_porous *z, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    double viscosity = 0;
+    for (int k = 0; k < s->fluid_count; k++)
+        viscosity = fmax(viscosity, s->fluid[k].viscosity/s->fluid[k].density);
+    const double linear = z->linear + z->per_viscosity*viscosity;
+    if (linear <= STRONGEST && z->quadratic <= STRONGEST) return TOBI_OK;
+    REFUSE("", "porous zone '%s' resists by a = %.3g 1/s and b = %.3g 1/m, allowed are up to %g each: what "
+           "lets next to nothing through is a body", name, linear, z->quadratic, STRONGEST);
+}
+
 /* m: how thick the box is along its direction. */
 static double find_thickness(const tobi_porous *z, int dimension)
 {
@@ -124,6 +140,7 @@ tobi_status tobi_world_add_porous(tobi_world *w, const tobi_porous_def *def, tob
                "resistance act alike in all", def->name);
     if (z.kind != TOBI_POROUS_ALL) TOBI_TRY(find_direction(w, def, &z, err));
     resist(def, &z, def->screen_loss > 0 ? find_thickness(&z, w->system[0].box.dimension) : 1);
+    TOBI_TRY(check_drag(w, def->name, &z, err));
     snprintf(z.name, sizeof z.name, "%s", def->name);
     w->sim.porous[w->sim.porous_count++] = z;
     return TOBI_OK;

@@ -444,6 +444,12 @@ static void bad_contents_are_refused(void **state)
     REFUSED(tobi_world_add_porous(w, &z, &err), TOBI_INVALID, "a direction in 2-D lies in the plane");
     z.direction[0] = 0;
     OK(tobi_world_add_porous(w, &z, &err));
+    z = stones_in(0.5, 0.6);
+    z.name = "clay";
+    z.stone_size = 1e-6;
+    REFUSED(tobi_world_add_porous(w, &z, &err), TOBI_INVALID, "porous zone 'clay' resists by a = ");
+    z.linear_coefficient = 0;
+    REFUSED(tobi_world_add_porous(w, &z, &err), TOBI_INVALID, "and b = 1.03e+07 1/m, allowed are up to");
     tobi_world_destroy(w);
     d.method = "mlsmpm";
     d.spacing = 0.1;
