@@ -120,6 +120,8 @@ void say_changed_files(const tobi_scene *scene, const char *dir, const char *wha
 /* argp_parse, which may run out of memory before it has looked at anything: then the program ends. */
 void parse_arguments(const struct argp *argp, int argc, char **argv, void *input);
 double parse_positive(struct argp_state *state, const char *option, const char *text);
+/* The same, and 0: a time. */
+double parse_time(struct argp_state *state, const char *option, const char *text);
 int parse_threads(struct argp_state *state, const char *text);
 /* For all keys that a command does not know itself: takes its one argument, called SCENE or DIR. */
 error_t parse_argument(struct argp_state *state, int key, const char *value, const char *name,

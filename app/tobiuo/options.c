@@ -20,6 +20,15 @@ double parse_positive(struct argp_state *state, const char *option, const char *
     return value;
 }
 
+double parse_time(struct argp_state *state, const char *option, const char *text)
+{
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end != '\0' || !isfinite(value) || value < 0)
+        argp_error(state, "%s: '%s' is not a number from 0 on", option, text);
+    return value;
+}
+
 int parse_threads(struct argp_state *state, const char *text)
 {
     char *end;

@@ -29,7 +29,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
         if (!*value) argp_error(state, "--out is empty");
         o->out = value;
         break;
-    case KEY_FROM: o->from = parse_positive(state, "--from", value); break;
+    case KEY_FROM: o->from = parse_time(state, "--from", value); break;
     case KEY_LANGUAGE: parse_language(state, value); break;
     case KEY_FORCE: o->force = 1; break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);

@@ -59,9 +59,9 @@ static error_t parse_more(int key, char *value, struct argp_state *state, sample
     char *end;
     switch (key) {
     case KEY_COUNT:
-        o->count = (int)fmin(fmax(strtod(value, &end), -1), 2e9);
+        o->count = (int)fmin(fmax((double)strtoll(value, &end, 10), -1), 2e9);
         if (end == value || *end || o->count < 2 || o->count > 1000000)
-            argp_error(state, "--count: '%s' is not a number from 2 to 1000000", value);
+            argp_error(state, "--count: '%s' is not a whole number from 2 to 1000000", value);
         return 0;
     case KEY_NAME: check_name(state, o->name = value); return 0;
     case KEY_THREADS: o->threads = parse_threads(state, value); return 0;
@@ -83,8 +83,8 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_BOX: o->box = value; break;
     case KEY_CELL: o->cell = parse_positive(state, "--cell", value); break;
     case KEY_FIELDS: o->fields = value; break;
-    case KEY_FROM: o->from = parse_positive(state, "--from", value); break;
-    case KEY_END: o->until = parse_positive(state, "--until", value); break;
+    case KEY_FROM: o->from = parse_time(state, "--from", value); break;
+    case KEY_END: o->until = parse_time(state, "--until", value); break;
     case KEY_MEAN: o->mean = 1; break;
     case KEY_WITH: o->body = value; break;
     case KEY_FLUID: o->fluid = value; break;

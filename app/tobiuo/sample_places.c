@@ -7,6 +7,7 @@
 #include <string.h>
 
 #define MOST_PLACES 20000000.0
+#define FARTHEST 1e7                   /* m, as in scenes */
 
 static int make_room(sample_places *p, int64_t count)
 {
@@ -23,7 +24,7 @@ static const char *read_place(const char *text, int dimension, double x[3])
     x[2] = 0;
     for (const char *at = text;; at = end + 1) {
         x[n++] = strtod(at, &end);
-        if (end == at || !isfinite(x[n - 1])) return NULL;
+        if (end == at || !(fabs(x[n - 1]) <= FARTHEST)) return NULL;
         end += strspn(end, " ");
         if (*end != ',' || n == 3) break;
     }
@@ -81,8 +82,10 @@ static int find_coordinate(const sample_run *s, const table *t, char axis, doubl
                  t->path, name);
         return -1;
     }
-    complain("%s: has no column '%c'; columns x, y%s are needed", t->path, axis,
-             s->looks.dimension == 3 ? ", z" : "");
+    char list[200];
+    table_list_columns(t, list, sizeof list);
+    complain("%s: has no column '%c'; columns x, y%s are needed, as x or x [mm]; it has %s", t->path, axis,
+             s->looks.dimension == 3 ? ", z" : "", list);
     return -1;
 }
 
@@ -102,8 +105,9 @@ static int find_points(sample_run *s)
     for (size_t i = 0; i < t.rows && !code; i++) {
         s->places.x[i][2] = 0;
         for (int a = 0; a < s->looks.dimension && !code; a++)
-            if (!isfinite(s->places.x[i][a] = scale[a]*table_number(&t, i, column[a])))
-                code = complain("%s: place %zu has no number in column '%c'", path, i + 1, "xyz"[a]);
+            if (!(fabs(s->places.x[i][a] = scale[a]*table_number(&t, i, column[a])) <= FARTHEST))
+                code = complain("%s: place %zu has no number up to %g m in column '%c'", path, i + 1,
+                                FARTHEST, "xyz"[a]);
     }
     table_free(&t);
     return code;
@@ -125,6 +129,8 @@ static int find_grid(sample_run *s)
         if (extent > 0) extents *= extent, axes++;
     }
     if (!code && axes == 0) code = complain("--box '%s': both corners are the same", s->options->box);
+    if (!code && points < 2)
+        code = complain("--box '%s': a cell of %g m is wider than the box", s->options->box, cell);
     if (!code && points > MOST_PLACES)
         code = complain("--box '%s': a cell of %g m makes %.3g places, allowed are %.0f; take a cell of %.2g "
                         "m", s->options->box, cell, points, MOST_PLACES,

@@ -264,7 +264,7 @@ int sweep_write_slurm(const sweep *s)
                      "#SBATCH --job-name=tobiuo_sweep\n#SBATCH --array=0-%d", s->runs, path, s->runs - 1);
         if (s->jobs > 1) fprintf(out, "%%%d", s->jobs);
         fprintf(out, "\n#SBATCH --cpus-per-task=8\n#SBATCH --time=24:00:00\n"
-                     "#SBATCH --output=%s/slurm_%%a.txt\ncd", s->dir);
+                     "#SBATCH --output=\"%s/slurm_%%a.txt\"\ncd", s->dir);
         put_quoted(out, here);
         fputs(" || exit 1\nexec", out);
         put_command(s, out);

@@ -121,6 +121,9 @@ static int read_rows(table *t, char *rest)
         for (int k = 0, last = 0; !last; k++) {
             char *field = cut_field(t, &rest, &last);
             if (k < t->columns) row[k] = field;
+            else if (*field)
+                return complain("%s: row %zu has more than the %d columns of the first line; is a comma a "
+                                "decimal mark there?", t->path, t->rows, t->columns);
         }
     }
     return 0;

@@ -1,7 +1,8 @@
 /* A CSV table in memory: history.csv, bodies.csv, and reference data that a scene names.
 
    Lines that begin with # and empty lines are skipped; the next line names the columns; fields may
-   be quoted as RFC 4180 says. The comma, semicolon or tab between the names parts all fields. */
+   be quoted as RFC 4180 says. The comma, semicolon or tab between the names parts all fields. A row
+   that holds more than there are names is refused. */
 #pragma once
 #include <stddef.h>
 

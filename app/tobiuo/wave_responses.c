@@ -146,15 +146,18 @@ static int add_body(answers *a, const table *t, const char *body)
     static const char *const part[] = { "x", "y", "z", "turn_x", "turn_y", "turn_z" };
     const wave_run *w = a->run;
     rows r = { 0 };
+    const double end = w->set.begin + ((double)w->set.count - 1)*w->set.step;
     double way = 0;
     int code = read_body_rows(w, t, body, &r), moves = 0;
     for (int k = 0; k < MOTIONS && !code; k++) {
-        double mean = 0, low = INFINITY, high = -INFINITY;
+        double mean = 0, low = INFINITY, high = -INFINITY, count = 0;
         for (size_t n = 0; n < r.count; n++) {
             const double value = r.value[k][n];
-            mean += value/(double)r.count;
+            if (r.time[n] < w->set.begin || r.time[n] > end) continue;
+            mean += value, count++;
             low = fmin(low, value), high = fmax(high, value);
         }
+        mean /= fmax(count, 1);
         if (k < 3) way += a->direction[k]*(mean - a->first[k]);
         if (!(high > low)) continue;
         response *one = add_response(a, k < 3 ? "m" : "degrees");
@@ -209,10 +212,44 @@ static int has_body(const table *t, const char *body)
     return 0;
 }
 
+/* Names that --response takes, owned. */
+typedef struct known { char *name[256]; size_t count; } known;
+
+static void add_known(known *k, const char *name)
+{
+    const char *unit = strstr(name, " [");
+    for (size_t n = 0; n < k->count; n++)
+        if (strcmp(k->name[n], name) == 0) return;
+    if (k->count == sizeof k->name/sizeof *k->name) return;
+    if ((k->name[k->count] = strndup(name, unit ? (size_t)(unit - name) : strlen(name)))) k->count++;
+}
+
+/* The bodies of bodies.csv, the columns of other tables but for the time. */
+static void add_names(known *k, const table *t, int bodies)
+{
+    const int name = table_column(t, "name");
+    for (size_t i = 0; bodies && name >= 0 && i < t->rows; i++)
+        add_known(k, t->cells[i*(size_t)t->columns + (size_t)name]);
+    for (int c = 1; !bodies && c < t->columns; c++) add_known(k, t->names[c]);
+}
+
+static int complain_name(const answers *a, const known *k, const char *name)
+{
+    const char *near = tobi_suggest(name, (const char *const *)k->name, k->count);
+    char list[200] = "";
+    size_t used = 0;
+    for (size_t n = 0; n < k->count && !near && used + strlen(k->name[n]) < sizeof list - 8; n++)
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", n ? ", " : "", k->name[n]);
+    return complain("--response %s: %s has no body of this name, and no such column in probes.csv, lines.csv "
+                    "or joints.csv; %s %s%s", name, a->run->options->dir, near ? "did you mean" : "there are",
+                    near ? near : k->count ? list : "none", near ? "?" : "");
+}
+
 static int add_named(answers *a, const char *name)
 {
     static const char *const files[] = { "bodies.csv", "probes.csv", "lines.csv", "joints.csv" };
     const char *dir = a->run->options->dir;
+    known others = { .count = 0 };
     int code = 0, found = 0;
     for (int k = 0; k < 4 && !found && !code; k++) {
         table t = { 0 };
@@ -224,11 +261,12 @@ static int add_named(answers *a, const char *name)
         const int column = k > 0 ? find_column(&t, name) : -1;
         found = k > 0 ? column >= 0 : has_body(&t, name);
         if (found) code = k > 0 ? add_column(a, &t, column, name) : add_body(a, &t, name);
+        else add_names(&others, &t, k == 0);
         table_free(&t);
     }
-    return found || code ? code
-        : complain("--response %s: %s has no body of this name, and no such column in probes.csv, lines.csv "
-                   "or joints.csv", name, dir);
+    if (!found && !code) code = complain_name(a, &others, name);
+    for (size_t n = 0; n < others.count; n++) free(others.name[n]);
+    return code;
 }
 
 /* --- what is told --- */
@@ -340,8 +378,13 @@ static int tell(answers *a)
 {
     const wave_run *w = a->run;
     int code = take_waves(a);
-    for (int k = 0; k < w->options->response_count && !code; k++)
-        code = add_named(a, w->options->responses[k]);
+    for (int k = 0; k < w->options->response_count && !code; k++) {
+        const char *name = w->options->responses[k];
+        for (int n = 0; n < k && !code; n++)
+            if (strcmp(w->options->responses[n], name) == 0)
+                code = complain("--response %s: is asked for twice", name);
+        if (!code) code = add_named(a, name);
+    }
     for (int k = 0; k < a->count && !code; k++) {
         response *r = &a->list[k];
         r->gain = calloc(w->set.bins, sizeof *r->gain);

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 enum { RECORD_LIMIT = 20000 };
+static const double MUCH_BACK = 1.5;   /* of the waves that go on: a wall sends back no more than all */
 
 enum { KEY_FROM = KEY_OWN, KEY_END, KEY_DEPTH };
 
@@ -45,8 +46,8 @@ static error_t parse(int key, char *value, struct argp_state *state)
             argp_error(state, "--format: '%s' is neither svg nor png", value);
         o->format = value;
         break;
-    case KEY_FROM: o->from = parse_positive(state, "--from", value); break;
-    case KEY_END: o->until = parse_positive(state, "--until", value); break;
+    case KEY_FROM: o->from = parse_time(state, "--from", value); break;
+    case KEY_END: o->until = parse_time(state, "--until", value); break;
     case KEY_DEPTH: o->depth = parse_positive(state, "--depth", value); break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
@@ -244,6 +245,9 @@ static int split_group(wave_run *w, int group)
     if (w->result[group].resolved < 0.8)
         fprintf(stderr, "tobiuo: note: --gauges %s: only %.0f %% of the energy is of frequencies that they "
                 "tell apart\n", w->options->groups[group], 100*w->result[group].resolved);
+    if (w->result[group].back > MUCH_BACK*w->result[group].forward)
+        fprintf(stderr, "tobiuo: note: --gauges %s: more comes back than goes on; name the gauges in the "
+                "direction of the waves that arrive\n", w->options->groups[group]);
     return 0;
 }
 

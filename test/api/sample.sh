@@ -228,7 +228,12 @@ expect 1 "there are no results of a run" sample nowhere --line "0,0 to 1,1"
 expect 2 "which DIR?" sample --line "0,0 to 1,1"
 expect 2 "where? one of --line, --points, --box" sample still
 expect 2 "only one of --line, --points, --box" sample still --line "0,0 to 0.1,0.1" --box "0,0 to 0.1,0.1"
-expect 2 "--count: '1' is not a number from 2 to 1000000" sample still --line "0,0 to 0.1,0.1" --count 1
+expect 2 "--count: '2.5' is not a whole number" sample still --line "0,0 to 0.1,0.1" --count 2.5
+expect 1 "--box '0,0 to 0.1,0.1': a cell of 1 m is wider than the box" sample still --box "0,0 to 0.1,0.1" --cell 1
+expect 1 "is not like" sample still --line "1e308,0 to -1e308,0" --with block
+expect 0 "" sample still --line "0,0 to 0.1,0.1" --from 0 --until 0 --name start
+check "the first output alone" test "$(grep -c . still/sample/start.csv)" = 51
+expect 2 "--count: '1' is not a whole number from 2 to 1000000" sample still --line "0,0 to 0.1,0.1" --count 1
 expect 2 "--count is for --line" sample still --box "0,0 to 0.1,0.1" --count 5
 expect 2 "--cell is for --box" sample still --line "0,0 to 0.1,0.1" --cell 0.1
 expect 2 "--from 2 lies behind --until 1" sample still --line "0,0 to 0.1,0.1" --from 2 --until 1
@@ -258,6 +263,12 @@ expect 1 "--with block: three has no bodies" sample three --line "0,0,0 to 0.1,0
 expect 1 "three has no fluid 'watr'; did you mean water?" sample three --line "0,0,0 to 0.1,0,0" --fluid watr
 expect 1 "still has no solid 'cube'" sample still --line "0,0 to 0.1,0" --solid cube
 expect 1 "missing.csv" sample still --points missing.csv
+printf 'x,y\n0,1,0,2\n' > comma.csv
+expect 1 "comma.csv: row 1 has more than the 2 columns of the first line; is a comma a decimal mark there?" \
+    sample still --points comma.csv
+printf 'x(m),y(m)\n0.1,0.2\n' > names.csv
+expect 1 "names.csv: has no column 'x'; columns x, y are needed, as x or x [mm]; it has x(m), y(m)" \
+    sample still --points names.csv
 printf 'x,z\n0.1,0.1\n' > flat.csv
 printf 'y [cm],x [mm]\n%s,%s\n' 10 100 > units.csv
 expect 0 "" sample still --points units.csv --until 0.01 --name units
@@ -269,7 +280,7 @@ expect 1 "flat.csv: has no column 'y'; columns x, y are needed" sample still --p
 printf 'x,y\n' > empty.csv
 expect 1 "empty.csv: has no places" sample still --points empty.csv
 printf 'x,y\n0.1,0.1\n0.1,up\n' > words.csv
-expect 1 "words.csv: place 2 has no number in column 'y'" sample still --points words.csv
+expect 1 "words.csv: place 2 has no number up to 1e+07 m in column 'y'" sample still --points words.csv
 cp framed/bodies.csv whole.csv
 sed -i '$s/0.25,0.2/,0.2/' framed/bodies.csv
 expect 1 "framed/bodies.csv: the row of 'block' at 0.1" sample framed --with block --line "0.4,0.1 to 0.41,0.1"

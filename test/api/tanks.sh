@@ -142,6 +142,7 @@ sweep=(sweep $flat --set spacing=0.02,0.025 --set method=dfsph,wcsph --until 0.0
 expect 0 "" "${sweep[@]}" --slurm
 check "an array job" grep -q "^#SBATCH --array=0-3" s/sweep.slurm
 check "that is a shell script" sh -n s/sweep.slurm
+check "whose output may have blanks in its name" grep -q '^#SBATCH --output="s/slurm_%a.txt"' s/sweep.slurm
 check "and runs one of them" env SLURM_ARRAY_TASK_ID=1 sh s/sweep.slurm
 check "only that one" test -s s/spacing=0.02_method=wcsph/summary.json -a ! -e s/spacing=0.02_method=dfsph
 (trap '' XFSZ; ulimit -f 0; exec "$program" sweep $flat --set spacing=0.02,0.025 --out narrow) 2>&1 | cat > out.txt

@@ -93,6 +93,11 @@ worst = max(abs(float(r["raft_z_gain [m per m]"]) - 1.2) for r in rows)
 turns = max(abs(float(r["raft_z_phase [degrees]"]) + 25) for r in rows)
 raise SystemExit(not (len(rows) > 50 and worst < 0.12 and turns < 6))'
 if command -v gnuplot > /dev/null; then check "a picture" test -s whole/plots/wave_gains.svg; fi
+cp whole/bodies.csv anchored.csv
+awk -F, -v OFS=, '$2 == "raft" && $1 < 20 { $3 += 3 } { print }' anchored.csv > whole/bodies.csv
+expect 0 "" waves whole --gauges G1,G2,G3 --response raft --from 20
+near raft_x "phase [degrees]" 40 3
+mv anchored.csv whole/bodies.csv
 expect 0 "" waves whole --response raft
 check "without --gauges the first gauge" grep -q "^waves: G1" out.txt
 
@@ -120,7 +125,10 @@ expect 0 "" $sweep --slurm --waves "--from 0.5"
 check "the array job knows of it" grep -q "sweep.* --waves '--from 0.5' --table" swept/sweep.slurm
 
 # --- messages ---------------------------------------------------------------------------------------
-expect 1 "--response keel: whole has no body of this name, and no such column" waves whole --response keel
+expect 1 "--response keel: whole has no body of this name, and no such column in probes.csv, lines.csv or joints.csv; \
+there are raft, post, G1_level, G2_level, G3_level, rope_tension, rope_distance" waves whole --response keel
+expect 1 "did you mean raft?" waves whole --response raft_x
+expect 1 "--response raft: is asked for twice" waves whole --response raft --response raft
 expect 1 "--response post: the body does not move" waves whole --response post
 expect 1 "--response rope_distance: its rows do not cover" waves whole --response rope_distance
 expect 2 "--response: at most 16 times" waves whole $(for k in $(seq 17); do echo --response raft; done)

@@ -133,7 +133,10 @@ expect 1 "they cannot tell waves of 1." waves whole --gauges G1,C
 expect 1 "at most 16 gauges" waves whole --gauges G1,G2,G3,B1,B2,B3,C,S,A,M0,M1,M2,M3,M4,M5,M6,D
 expect 2 "--gauges: at most 16 times" waves whole $(for k in $(seq 17); do echo --gauges G1,G2; done)
 expect 2 "--format: 'pdf' is neither svg nor png" waves whole --format pdf
-expect 2 "--from: '-1' is not a positive number" waves whole --from -1
+expect 2 "--from: '-1' is not a number from 0 on" waves whole --from -1
+expect 0 "" waves whole --from 0
+expect 0 "--gauges G3,G2,G1: more comes back than goes on; name the gauges in the direction of the waves" \
+    waves whole --gauges G3,G2,G1
 expect 1 "fewer than 8 levels" waves whole --from 1e6
 expect 1 "there are no sensors (no probes.csv)" waves .
 sed -i 's/_level/_pressure/g' whole/probes.csv
