@@ -81,8 +81,8 @@ static void print_bodies(const tobi_world *world, int dimension)
     if (count > LISTED) printf("body             and %d more that move by forces\n", count - LISTED);
 }
 
-/* What porous zones resist. */
-static void print_zones(const tobi_world *world)
+/* What porous zones resist, and how large they are. */
+static void print_zones(const tobi_world *world, int dimension)
 {
     tobi_porous_info z;
     const char *name;
@@ -91,7 +91,7 @@ static void print_zones(const tobi_world *world)
         if (z.direction[0] != 0.0 || z.direction[1] != 0.0 || z.direction[2] != 0.0)
             printf(" %s (%.3g, %.3g, %.3g)", z.along ? "along" : "across", z.direction[0], z.direction[1],
                    z.direction[2]);
-        printf("\n");
+        printf(", in %.4g %s\n", z.extent, dimension == 2 ? "m2" : "m3");
     }
 }
 
@@ -157,7 +157,7 @@ static void print_scene(const tobi_scene *scene, const tobi_world *world, const 
     print_step(d, world, t);
     print_solids(world, d->dimension);
     print_bodies(world, d->dimension);
-    print_zones(world);
+    print_zones(world, d->dimension);
     print_notes(world, stdout, "note             ");
     if (tobi_scene_import_table(scene))
         printf("\nA scene of %s. What became of its keys:\n\n%s\n", tobi_scene_import_program(scene),

@@ -53,8 +53,10 @@ typedef struct tobi_looks {
     tobi_material_look *materials;
     tobi_body_look *bodies;            /* and lines behind them */
     tobi_inlet_look *inlets;
-    double (*zones)[2][3];             /* m, corners of porous zones, within the domain               */
+    double (*zones)[2][3];             /* m, corners of porous zones that are boxes, within the domain */
     int    zone_count;
+    double (*edges)[2][3];             /* m, ends of the edges of those by an outline, likewise       */
+    int64_t edge_count;
 } tobi_looks;
 
 /* world: need not have begun. */

@@ -74,6 +74,8 @@ typedef struct tobi_picture {
     double box_min[3], box_max[3];     /* m, the domain: drawn as lines and, without a camera, fitted   */
     const double (*zones)[2][3];       /* m, lower and upper corners of boxes that are drawn as lines   */
     int zone_count;
+    const double (*edges)[2][3];       /* m, ends of lines that are drawn like those                    */
+    int64_t edge_count;
     double up[3];                      /* direction against gravity; zero = z in 3-D (unused in 2-D)    */
     int    has_camera;                 /* 0: the view fits the box                                      */
     double eye[3], target[3];          /* m, 3-D only                                                   */

@@ -1,23 +1,26 @@
 /* Porous zones: types of tobiuo.h, which includes this file. */
 #ifndef TOBIUO_POROUS_H
 #define TOBIUO_POROUS_H
+#include "tobiuo/outline.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* A porous zone: a box whose contents resist liquids. The pressure falls by rho (a u + b |u| u) per metre, u
-   the filter velocity. What is in it is one of four; of the others all numbers are 0. */
+/* A porous zone: a box or an outline whose contents resist liquids. The pressure falls by
+   rho (a u + b |u| u) per metre, u the filter velocity. What is in it is one of four; of the others all
+   numbers are 0. */
 enum { TOBI_POROUS_LIMIT = 16 };
 typedef struct tobi_porous_def {
     const char *name;
-    double box_min[3], box_max[3];    /* m                                                             */
+    double box_min[3], box_max[3];    /* m; both 0 with an outline                                     */
+    tobi_outline_def outline;         /* instead of the box                                            */
     double stone_size, porosity;      /* m, 1: of stones, a and b by van Gent (1995)                   */
     double linear_coefficient, quadratic_coefficient;    /* 1: alpha and beta of that                  */
     double stem_number, stem_diameter, stem_drag;        /* 1/m2, m, 1: of stems                       */
     double screen_loss;               /* 1: of a screen, pressure over rho u^2/2                       */
     double linear, quadratic;         /* 1/s, 1/m: a and b themselves                                  */
-    double direction[3];              /* of stems, or across a screen; 0 = upwards, or the thinnest side */
+    double direction[3];              /* of stems, or across a screen; 0 = upwards, or the thin side */
 } tobi_porous_def;
 
 /* A porous zone; force, power and volume of the last step, in 2-D per m; 0 after a load. */
@@ -28,6 +31,7 @@ typedef struct tobi_porous_info {
     double linear, quadratic;         /* 1/s, 1/m: a and b, of the first fluid                         */
     double direction[3];              /* 0: all directions resist alike                                */
     int    along;                     /* 1: the direction resists, 0: what is across it                */
+    double extent;                    /* m3, in 2-D m2: of the zone itself                             */
 } tobi_porous_info;
 
 #ifdef __cplusplus

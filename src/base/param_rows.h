@@ -40,7 +40,7 @@
              "m, cm or mm." }, \
     { .key = "outline.base", REAL, AT(type, member.base), .def = { TOBI_NO_PLACE }, PLACE, \
       .unit = "m", .text = "none", .doc = "With it the points are a line to the right, as of a beach, and " \
-             "the body is what lies between it and this height." }, \
+             "the outline is what lies between it and this height." }, \
     { .key = "outline.axis", CHOICE("y|z|x", 3), AT(type, member.axis), \
       .doc = "Of the extrusion in 3-D: points are x and z for y, x and y for z, y and z for x." }, \
     { .key = "outline.from", REAL, AT(type, member.from), PLACE, .unit = "m", \

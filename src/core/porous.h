@@ -1,12 +1,18 @@
-/* Porous zones: boxes whose contents resist liquids. */
+/* Porous zones: boxes and prisms over polygons whose contents resist liquids. */
 #pragma once
+#include "geom/polygon.h"
 #include "tobiuo/types.h"
 
 enum { TOBI_POROUS_ALL, TOBI_POROUS_ACROSS, TOBI_POROUS_ALONG };
 
+/* Places from the lower corner of the box of the world. */
 typedef struct tobi_porous {
     char name[64];
-    double lower[3], upper[3];      /* m, from the lower corner of the box of the world; upper is outside */
+    double lower[3], upper[3];      /* m, of its box; upper is outside                                    */
+    double (*corners)[2];           /* m, owned by the world: of its outline; NULL = all of its box       */
+    int64_t corner_count;
+    int axis, plane[2];             /* of the outline: of its extrusion, and of its corners               */
+    double extent, thickness;       /* m3, in 2-D m2, of the zone; m, of its thin direction               */
     int kind;                       /* which velocities feel it, against `direction`: TOBI_POROUS_*       */
     double direction[3];            /* unit vector                                                        */
     double per_viscosity;           /* 1/m2: a over the kinematic viscosity, of stones                    */
@@ -14,3 +20,17 @@ typedef struct tobi_porous {
     double porosity, size;          /* of stones, 0 without                                               */
     double force[3], power, volume; /* N, W, m3 of the last step, see tobi_porous_info                    */
 } tobi_porous;
+
+static inline tobi_polygon tobi_porous_polygon(const tobi_porous *z)
+{
+    return (tobi_polygon){ (const double (*)[2])z->corners, z->corner_count };
+}
+
+/* 1: x lies in the zone. */
+static inline int tobi_porous_holds(const tobi_porous *z, int dimension, const double *x)
+{
+    int inside = 1;
+    for (int a = 0; a < dimension; a++) inside &= x[a] >= z->lower[a] && x[a] < z->upper[a];
+    if (!inside || !z->corners) return inside;
+    return tobi_polygon_holds(tobi_porous_polygon(z), (double[]){ x[z->plane[0]], x[z->plane[1]] });
+}

@@ -157,10 +157,10 @@ static tobi_status make_prism(const char *whose, const tobi_outline *o, int axis
     return status;
 }
 
-tobi_status tobi_mesh_prism(const char *whose, const tobi_outline *given, int axis, double from, double to,
-                            tobi_mesh *out, tobi_error *err)
+tobi_status tobi_outline_clean(const char *whose, const tobi_outline *given, tobi_outline *out,
+                               tobi_error *err)
 {
-    const double end[2] = { from, to };
+    *out = (tobi_outline){ 0 };
     if (given->count > MOST_CORNERS)
         return tobi_fail(err, TOBI_INVALID, "%s: its outline has %lld points; at most %d are allowed",
                          whose, (long long)given->count, MOST_CORNERS);
@@ -181,7 +181,18 @@ tobi_status tobi_mesh_prism(const char *whose, const tobi_outline *given, int ax
             o.at[k][a] = o.at[o.count - 1 - k][a];
             o.at[o.count - 1 - k][a] = kept;
         }
-    if (status == TOBI_OK) status = make_prism(whose, &o, axis, end, out, err);
+    if (status == TOBI_OK) *out = o;
+    else tobi_outline_free(&o);
+    return status;
+}
+
+tobi_status tobi_mesh_prism(const char *whose, const tobi_outline *given, int axis, double from, double to,
+                            tobi_mesh *out, tobi_error *err)
+{
+    const double end[2] = { from, to };
+    tobi_outline o;
+    TOBI_TRY(tobi_outline_clean(whose, given, &o, err));
+    const tobi_status status = make_prism(whose, &o, axis, end, out, err);
     tobi_outline_free(&o);
     return status;
 }

@@ -77,19 +77,27 @@ static tobi_status read_outline(const char *whose, const tobi_outline_def *def, 
                              : tobi_fail(err, status, "%s: its outline: %s", whose, why.text);
 }
 
-tobi_status tobi_mesh_outline(const char *whose, const tobi_outline_def *def, int dimension, tobi_mesh *out,
-                              tobi_error *err)
+tobi_status tobi_outline_load(const char *whose, const tobi_outline_def *def, int dimension, int *axis,
+                              tobi_outline *out, tobi_error *err)
 {
-    const int axis = dimension == 2 || def->axis == 1 ? 2 : def->axis == 0 ? 1 : 0;
-    double from = def->from, to = def->to;
-    tobi_outline o = { 0 };
+    *out = (tobi_outline){ 0 };
+    *axis = dimension == 2 || def->axis == 1 ? 2 : def->axis == 0 ? 1 : 0;
     if (def->points && def->file)
         return tobi_fail(err, TOBI_INVALID, "%s: its outline has points and a file; it may have "
                          "one", whose);
-    if (dimension == 3 && !(to > from))
+    if (dimension == 3 && !(def->to > def->from))
         return tobi_fail(err, TOBI_INVALID, "%s: its outline goes from %g to %g m along %c; to must "
-                         "be greater than from", whose, from, to, "xyz"[axis]);
-    tobi_status status = read_outline(whose, def, axis, &o, err);
+                         "be greater than from", whose, def->from, def->to, "xyz"[*axis]);
+    return read_outline(whose, def, *axis, out, err);
+}
+
+tobi_status tobi_mesh_outline(const char *whose, const tobi_outline_def *def, int dimension, tobi_mesh *out,
+                              tobi_error *err)
+{
+    double from = def->from, to = def->to;
+    int axis;
+    tobi_outline o;
+    tobi_status status = tobi_outline_load(whose, def, dimension, &axis, &o, err);
     for (int64_t k = 0; k < o.count && dimension == 2 && status == TOBI_OK; k++) {
         const double way = fmax(fabs(o.at[k][0] - o.at[0][0]), fabs(o.at[k][1] - o.at[0][1]));
         to = k == 0 ? way : fmax(to, way), from = -to;

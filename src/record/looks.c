@@ -121,17 +121,59 @@ static tobi_status add_inlets(const tobi_world *w, tobi_looks *looks, tobi_error
     return TOBI_OK;
 }
 
+/* The part of a line within the domain, if any. */
+static void add_edge(tobi_looks *looks, const double a[3], const double b[3])
+{
+    double part[2] = { 0, 1 };
+    for (int n = 0; n < looks->dimension; n++) {
+        const double way = b[n] - a[n], low = looks->box_min[n] - a[n], high = looks->box_max[n] - a[n];
+        if (way == 0 && (low > 0 || high < 0)) return;
+        if (way == 0) continue;
+        part[0] = fmax(part[0], fmin(low/way, high/way));
+        part[1] = fmin(part[1], fmax(low/way, high/way));
+    }
+    if (!(part[1] > part[0])) return;
+    double (*edge)[3] = looks->edges[looks->edge_count++];
+    for (int end = 0; end < 2; end++)
+        for (int n = 0; n < 3; n++) edge[end][n] = a[n] + part[end]*(b[n] - a[n]);
+}
+
+/* Its outline, in 3-D at both ends with the edges between them. */
+static void add_prism(const tobi_porous *z, const double from[3], tobi_looks *looks)
+{
+    for (int64_t k = 0; k < z->corner_count; k++) {
+        double at[2][2][3] = { 0 };       /* of both ends of the extrusion, of this corner and the next */
+        for (int end = 0; end < 2; end++)
+            for (int n = 0; n < 2; n++) {
+                const double *corner = z->corners[(k + n)%z->corner_count];
+                for (int a = 0; a < 2; a++) at[end][n][z->plane[a]] = from[z->plane[a]] + corner[a];
+                if (looks->dimension == 3)
+                    at[end][n][z->axis] = from[z->axis] + (end ? z->upper : z->lower)[z->axis];
+            }
+        add_edge(looks, at[0][0], at[0][1]);
+        if (looks->dimension == 2) continue;
+        add_edge(looks, at[1][0], at[1][1]);
+        add_edge(looks, at[0][0], at[1][0]);
+    }
+}
+
 static tobi_status add_zones(const tobi_world *w, tobi_looks *looks, tobi_error *err)
 {
+    const double *from = w->system[0].box.lower;
+    int64_t corners = 0;
+    for (int k = 0; k < w->sim.porous_count; k++) corners += w->sim.porous[k].corner_count;
     looks->zones = calloc((size_t)w->sim.porous_count + 1, sizeof *looks->zones);
-    if (!looks->zones) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
-    for (int k = 0; k < w->sim.porous_count; k++, looks->zone_count++)
-        for (int a = 0; a < looks->dimension; a++) {
-            const tobi_porous *z = &w->sim.porous[k];
-            const double from = w->system[0].box.lower[a];
-            looks->zones[k][0][a] = fmax(from + z->lower[a], looks->box_min[a]);
-            looks->zones[k][1][a] = fmin(from + z->upper[a], looks->box_max[a]);
+    looks->edges = calloc((size_t)(3*corners) + 1, sizeof *looks->edges);
+    if (!looks->zones || !looks->edges) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    for (int k = 0; k < w->sim.porous_count; k++) {
+        const tobi_porous *z = &w->sim.porous[k];
+        if (z->corners) add_prism(z, from, looks);
+        for (int a = 0; a < looks->dimension && !z->corners; a++) {
+            looks->zones[looks->zone_count][0][a] = fmax(from[a] + z->lower[a], looks->box_min[a]);
+            looks->zones[looks->zone_count][1][a] = fmin(from[a] + z->upper[a], looks->box_max[a]);
         }
+        looks->zone_count += !z->corners;
+    }
     return TOBI_OK;
 }
 

@@ -340,6 +340,28 @@ static void check_planes(const tobi_scene *scene, tobi_source *source)
     }
 }
 
+/* A zone is a box with both corners or an outline. */
+static void check_porous(const tobi_scene *scene, tobi_source *source)
+{
+    const tobi_place zones = { &root, "porous_zones", 0 };
+    for (int i = 0; i < scene->tank.porous_count && !tobi_report_full(source->report); i++) {
+        const tobi_place entry = { &zones, NULL, (size_t)i }, at_box = { &entry, "box", 0 };
+        const tobi_place at_outline = { &entry, "outline", 0 };
+        const json_t *zone = json_array_get(json_object_get(scene->root, zones.key), (size_t)i);
+        const json_t *box = json_object_get(zone, "box"), *outline = json_object_get(zone, "outline");
+        if (!json_is_object(zone)) continue;
+        if (!box == !outline)
+            tobi_source_mistake(source, &entry, "must have one of box and outline, it has %s",
+                                box ? "both" : "none");
+        else if (box && !(json_object_get(box, "min") && json_object_get(box, "max")))
+            tobi_source_mistake(source, &at_box, "must have two corners, min and max");
+        else if (outline && !json_object_get(outline, "points") && !json_object_get(outline, "file"))
+            tobi_source_mistake(source, &at_outline, "must have points or a file");
+        else if (outline)
+            tobi_check_outline(source, &at_outline, &scene->tank.porous[i].outline, scene->world.dimension);
+    }
+}
+
 void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
 {
     check_method(scene, source);
@@ -351,6 +373,7 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     tobi_check_overlaps(scene, source);
     check_bodies(scene, source);
     check_planes(scene, source);
+    check_porous(scene, source);
     tobi_unused_check(scene, source);
     tobi_check_probes(scene, source);
     tobi_lines_check(scene, source);

@@ -55,6 +55,8 @@ const char *tobi_scene_file(const tobi_scene *scene, int index)
     for (int k = 0; k < scene->joint_count; k++) look_in(&s, &tobi_joint_table, &scene->joints[k]);
     for (int k = 0; k < scene->inlet_count; k++) look_in(&s, &tobi_inlet_table, &scene->inlets[k]);
     if (scene->tank.changes) look_in(&s, &tobi_gravity_table, &scene->tank.gravity);
+    for (int k = 0; k < scene->tank.porous_count; k++)
+        look_in(&s, &tobi_porous_table, &scene->tank.porous[k]);
     look_in_motion(&s, scene->tank.frame_def);
     return s.found;
 }

@@ -3,6 +3,7 @@
 #include "scene/tank.h"
 #include "scene/write.h"
 #include "base/param.h"
+#include "geom/outline.h"
 #include <stdlib.h>
 
 static void bind_gravity(tobi_scene_tank *t, const tobi_binder *binder, json_t *value,
@@ -84,8 +85,11 @@ static int write_zones(const tobi_scene_tank *t, json_t *root)
     int failed = !zones || !porous;
     for (int k = 0; k < t->damping_count; k++)
         failed |= json_array_append_new(zones, tobi_write_def(&tobi_damping_table, &t->damping[k]));
-    for (int k = 0; k < t->porous_count; k++)
-        failed |= json_array_append_new(porous, tobi_write_def(&tobi_porous_table, &t->porous[k]));
+    for (int k = 0; k < t->porous_count; k++) {
+        json_t *zone = tobi_write_def(&tobi_porous_table, &t->porous[k]);
+        json_object_del(zone, tobi_outline_given(&t->porous[k].outline) ? "box" : "outline");
+        failed |= json_array_append_new(porous, zone);
+    }
     if (t->damping_count) failed |= json_object_set(root, "damping_zones", zones);
     if (t->porous_count) failed |= json_object_set(root, "porous_zones", porous);
     json_decref(zones);

@@ -9,9 +9,7 @@ static const tobi_porous *find_zone(const tobi_system *s, const double *x, int *
 {
     for (int k = 0; k < s->sim->porous_count; k++) {
         const tobi_porous *z = &s->sim->porous[k];
-        int inside = 1;
-        for (int a = 0; a < s->box.dimension; a++) inside &= x[a] >= z->lower[a] && x[a] < z->upper[a];
-        if (!inside) continue;
+        if (!tobi_porous_holds(z, s->box.dimension, x)) continue;
         *number = k;
         return z;
     }

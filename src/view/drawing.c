@@ -47,6 +47,7 @@ void tobi_looks_free(tobi_looks *looks)
     free(looks->bodies);
     free(looks->inlets);
     free(looks->zones);
+    free(looks->edges);
     *looks = (tobi_looks){ 0 };
 }
 
@@ -367,6 +368,7 @@ static void set_picture(tobi_drawing *d)
         p->box_min[a] = s->box_min[a], p->box_max[a] = s->box_max[a], p->up[a] = -s->gravity[a];
     p->dimension = s->dimension;
     p->zones = (const double (*)[2][3])s->zones, p->zone_count = s->zone_count;
+    p->edges = (const double (*)[2][3])s->edges, p->edge_count = s->edge_count;
     p->particle_count = d->count;
     p->positions = (const double (*)[3])d->positions;
     p->values = d->values;

@@ -270,7 +270,13 @@ void view_draw_box(canvas *c, const tobi_picture *f, bool over_water)
 void view_draw_zones(canvas *c, const tobi_picture *f)
 {
     const vec color = { 0.45f, 0.13f, 0.02f };
+    const double lift = f->dimension == 2 ? 4*f->radius : 0;
     for (int k = 0; k < f->zone_count; k++)
-        draw_edges(c, f->dimension, f->zones[k][0], f->zones[k][1], f->dimension == 2 ? 4*f->radius : 0, 2,
-                   color, false);
+        draw_edges(c, f->dimension, f->zones[k][0], f->zones[k][1], lift, 2, color, false);
+    for (int64_t k = 0; k < f->edge_count; k++) {
+        double end[2][3];
+        for (int n = 0; n < 2; n++)
+            for (int a = 0; a < 3; a++) end[n][a] = a < f->dimension ? f->edges[k][n][a] : lift;
+        draw_line(c, end[0], end[1], 2, color, 0.75f, false);
+    }
 }

@@ -59,10 +59,11 @@ const tobi_param_table tobi_damping_table = {
 static const tobi_param porous_rows[] = {
     { .key = "name", TEXT, AT(tobi_porous_def, name), .unit = "name", .text = "zone", .required = true,
       .doc = "Name of the zone, used once in a scene and in the columns of porous_zones.csv." },
-    { .key = "box.min", VEC3, AT(tobi_porous_def, box_min), PLACE, .unit = "m", .required = true,
+    { .key = "box.min", VEC3, AT(tobi_porous_def, box_min), PLACE, .unit = "m",
       .doc = "Lower corner of the zone." },
-    { .key = "box.max", VEC3, AT(tobi_porous_def, box_max), PLACE, .unit = "m", .required = true,
+    { .key = "box.max", VEC3, AT(tobi_porous_def, box_max), PLACE, .unit = "m",
       .doc = "Upper corner of the zone." },
+    OUTLINE_ROWS(tobi_porous_def, outline),
     { .key = "stones.size", REAL, AT(tobi_porous_def, stone_size), RANGE(1e-6, 1e3), .unit = "m",
       .text = "none", .doc = "Median diameter D of stones, by which they resist after van Gent (1995)." },
     { .key = "stones.porosity", REAL, AT(tobi_porous_def, porosity), RANGE(0.01, 0.99), .unit = "1",
@@ -85,10 +86,11 @@ static const tobi_param porous_rows[] = {
       .doc = "b of that formula." },
     { .key = "direction", VEC3, AT(tobi_porous_def, direction), DIRECTION, .unit = "1",
       .doc = "Along stems, or across a screen. 0: stems stand upwards, a screen lies across the thinnest "
-             "side of its box." },
+             "side of its box, or along the longest side of its outline." },
     { 0 }
 };
 
 const tobi_param_table tobi_porous_table = {
-    "porous_zone", "A box whose contents resist liquids: one of stones, stems, screen and resistance.",
+    "porous_zone", "A box or an outline whose contents resist liquids: one of stones, stems, screen and "
+    "resistance.",
     sizeof(tobi_porous_def), porous_rows };

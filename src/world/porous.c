@@ -1,5 +1,5 @@
-/* The world's porous zones: added by definition after the fluids, read by number. Drawback: their boxes lie
-   along the axes. */
+/* The world's porous zones: added by definition after the fluids, read by number (their places:
+   porous_place.c). Drawback: what is in a zone is the same in all of it. */
 #include "base/error.h"
 #include "base/param.h"
 #include "geom/vec3.h"
@@ -7,6 +7,7 @@
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Stones that fill less of a zone leave its porosity out of account at little price. */
@@ -17,31 +18,6 @@ static const double OPEN_ENOUGH = 0.8;
 static const double STRONGEST = 1e7;
 
 #define REFUSE(key, ...) return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, __VA_ARGS__), "%s", key)
-
-static tobi_status place(const tobi_world *w, const tobi_porous_def *def, tobi_porous *z, tobi_error *err)
-{
-    const tobi_box *box = &w->system[0].box;
-    for (int a = 0; a < box->dimension; a++) {
-        z->lower[a] = def->box_min[a] - box->lower[a];
-        z->upper[a] = def->box_max[a] - box->lower[a];
-        if (!(z->upper[a] > z->lower[a]))
-            REFUSE("box.max", "porous zone '%s' reaches from %g to %g m in %c: allowed are upper corners "
-                   "above the lower ones", def->name, def->box_min[a], def->box_max[a], "xyz"[a]);
-        if (!(z->lower[a] < box->size[a] && z->upper[a] > 0))
-            REFUSE("box", "porous zone '%s' lies from %g to %g m in %c, outside of the domain", def->name,
-                   def->box_min[a], def->box_max[a], "xyz"[a]);
-    }
-    for (int k = 0; k < w->sim.porous_count; k++) {
-        const tobi_porous *other = &w->sim.porous[k];
-        int apart = 0;
-        for (int a = 0; a < box->dimension; a++)
-            apart |= z->lower[a] >= other->upper[a] || z->upper[a] <= other->lower[a];
-        if (!apart)
-            REFUSE("box", "porous zone '%s' overlaps '%s': allowed are boxes that touch at most", def->name,
-                   other->name);
-    }
-    return TOBI_OK;
-}
 
 /* Which of the four it is: exactly one. */
 static tobi_status check_kind(const tobi_porous_def *d, tobi_error *err)
@@ -64,11 +40,8 @@ static tobi_status find_direction(const tobi_world *w, const tobi_porous_def *de
                                   tobi_error *err)
 {
     const int dimension = w->system[0].box.dimension, given = vec3_length(def->direction) > 0;
-    int thinnest = 0;
     memcpy(z->direction, def->direction, sizeof z->direction);
-    for (int a = 1; a < dimension; a++)
-        if (z->upper[a] - z->lower[a] < z->upper[thinnest] - z->lower[thinnest]) thinnest = a;
-    if (!given && z->kind == TOBI_POROUS_ALONG) z->direction[thinnest] = 1;
+    if (!given && z->kind == TOBI_POROUS_ALONG) tobi_porous_thin_direction(z, dimension, z->direction);
     if (!given && z->kind == TOBI_POROUS_ACROSS) vec3_sub(z->direction, z->direction, w->sim.def.gravity);
     if (!(vec3_length(z->direction) > 0))
         REFUSE("direction", "porous zone '%s': stems stand upwards, and there is no gravity; give their "
@@ -108,13 +81,19 @@ static tobi_status check_drag(const tobi_world *w, const char *name, const tobi_
            "lets next to nothing through is a body", name, linear, z->quadratic, STRONGEST);
 }
 
-/* m: how thick the box is along its direction. */
-static double find_thickness(const tobi_porous *z, int dimension)
+/* What is in it, of a zone that has its place. */
+static tobi_status fill_zone(const tobi_world *w, const tobi_porous_def *def, tobi_porous *z, tobi_error *err)
 {
-    double least = INFINITY;
-    for (int a = 0; a < dimension; a++)
-        if (fabs(z->direction[a]) > 0) least = fmin(least, (z->upper[a] - z->lower[a])/fabs(z->direction[a]));
-    return least;
+    TOBI_TRY(check_kind(def, err));
+    if (def->stem_number > 0) z->kind = TOBI_POROUS_ACROSS;
+    if (def->screen_loss > 0) z->kind = TOBI_POROUS_ALONG;
+    if (z->kind == TOBI_POROUS_ALL && vec3_length(def->direction) > 0)
+        REFUSE("direction", "porous zone '%s': a direction is of stems and of a screen; stones and "
+               "resistance act alike in all", def->name);
+    if (z->kind != TOBI_POROUS_ALL) TOBI_TRY(find_direction(w, def, z, err));
+    resist(def, z, def->screen_loss > 0 ? tobi_porous_thickness(z, w->system[0].box.dimension) : 1);
+    snprintf(z->name, sizeof z->name, "%s", def->name);
+    return check_drag(w, def->name, z, err);
 }
 
 tobi_status tobi_world_add_porous(tobi_world *w, const tobi_porous_def *def, tobi_error *err)
@@ -131,19 +110,11 @@ tobi_status tobi_world_add_porous(tobi_world *w, const tobi_porous_def *def, tob
     if (w->sim.porous_count == TOBI_POROUS_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d porous zones", TOBI_POROUS_LIMIT);
     TOBI_TRY(tobi_names_check_porous(w, def->name, err));
-    TOBI_TRY(place(w, def, &z, err));
-    TOBI_TRY(check_kind(def, err));
-    if (def->stem_number > 0) z.kind = TOBI_POROUS_ACROSS;
-    if (def->screen_loss > 0) z.kind = TOBI_POROUS_ALONG;
-    if (z.kind == TOBI_POROUS_ALL && vec3_length(def->direction) > 0)
-        REFUSE("direction", "porous zone '%s': a direction is of stems and of a screen; stones and "
-               "resistance act alike in all", def->name);
-    if (z.kind != TOBI_POROUS_ALL) TOBI_TRY(find_direction(w, def, &z, err));
-    resist(def, &z, def->screen_loss > 0 ? find_thickness(&z, w->system[0].box.dimension) : 1);
-    TOBI_TRY(check_drag(w, def->name, &z, err));
-    snprintf(z.name, sizeof z.name, "%s", def->name);
-    w->sim.porous[w->sim.porous_count++] = z;
-    return TOBI_OK;
+    tobi_status status = tobi_porous_place(w, def, &z, err);
+    if (status == TOBI_OK) status = fill_zone(w, def, &z, err);
+    if (status == TOBI_OK) w->sim.porous[w->sim.porous_count++] = z;
+    else free(z.corners);
+    return status;
 }
 
 const char *tobi_world_porous(const tobi_world *w, int zone, tobi_porous_info *info)
@@ -153,7 +124,8 @@ const char *tobi_world_porous(const tobi_world *w, int zone, tobi_porous_info *i
     const tobi_fluid *f = &w->system[0].fluid[0];
     if (!info) return z->name;
     *info = (tobi_porous_info){ .power = z->power, .volume = z->volume, .quadratic = z->quadratic,
-                                .linear = z->linear, .along = z->kind == TOBI_POROUS_ALONG };
+                                .linear = z->linear, .along = z->kind == TOBI_POROUS_ALONG,
+                                .extent = z->extent };
     if (w->system[0].fluid_count > 0) info->linear += z->per_viscosity*f->viscosity/f->density;
     memcpy(info->force, z->force, sizeof info->force);
     if (z->kind != TOBI_POROUS_ALL) memcpy(info->direction, z->direction, sizeof info->direction);
@@ -164,13 +136,8 @@ const char *tobi_world_porous(const tobi_world *w, int zone, tobi_porous_info *i
 static int can_be_wet(const tobi_world *w, const tobi_porous *z)
 {
     const tobi_system *s = &w->system[0];
-    for (int64_t i = 0; i < s->particles.count; i++) {
-        int inside = 1;
-        for (int a = 0; a < s->box.dimension; a++)
-            inside &= (&s->particles.position[i].x)[a] >= z->lower[a] &&
-                      (&s->particles.position[i].x)[a] < z->upper[a];
-        if (inside) return 1;
-    }
+    for (int64_t i = 0; i < s->particles.count; i++)
+        if (tobi_porous_holds(z, s->box.dimension, &s->particles.position[i].x)) return 1;
     return 0;
 }
 
@@ -180,8 +147,7 @@ tobi_status tobi_world_note_porous(tobi_world *w, tobi_error *err)
     char text[320];
     for (int k = 0; k < w->sim.porous_count; k++) {
         const tobi_porous *z = &w->sim.porous[k];
-        double least = INFINITY;
-        for (int a = 0; a < w->system[0].box.dimension; a++) least = fmin(least, z->upper[a] - z->lower[a]);
+        const double least = z->thickness;
         if (least < 2*d*(1 - 1e-9)) {
             snprintf(text, sizeof text, "is %.4g m thin, %.2g spacings: particles pass it in a few steps, "
                      "and its drag is that of a thicker or thinner one; a spacing of %.3g m would do\n",

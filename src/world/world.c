@@ -93,6 +93,7 @@ void tobi_world_destroy(tobi_world *w)
         tobi_mesh_free(&w->regions[k].shape);
         free(w->regions[k].points);
     }
+    for (int k = 0; k < w->sim.porous_count; k++) free(w->sim.porous[k].corners);
     free(w->sim.bodies);
     free(w->regions);
     free(w->probes);

@@ -86,6 +86,12 @@ tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tob
 /* Adds a note for each wave maker in a liquid whose method damps waves or whose depth is another, and for
    each other body that a motion without a script takes through a side. */
 tobi_status tobi_world_note_makers(tobi_world *w, tobi_error *err);
+/* A zone's place, box and thickness. z->corners is the caller's, after a failure too. porous_place.c */
+tobi_status tobi_porous_place(const tobi_world *w, const tobi_porous_def *def, tobi_porous *z,
+                              tobi_error *err);
+/* A unit vector across its thin side; m: how thick it is along z->direction, in the mean. porous_place.c */
+void tobi_porous_thin_direction(const tobi_porous *z, int dimension, double direction[3]);
+double tobi_porous_thickness(const tobi_porous *z, int dimension);
 /* Adds a note for each porous zone that is thin, has stones, or no liquid in it. porous.c */
 tobi_status tobi_world_note_porous(tobi_world *w, tobi_error *err);
 /* Adds a note for each probe of a point that begins deep in a body. */

@@ -40,6 +40,29 @@ expect 0 "" check channel.json
 check "check tells what resists" grep -q "porous zone      kelp: 0 1/s, 2 1/m across (0, 1, 0)" out.txt
 check "and what a zone of stones is not" grep -q "has stones of a porosity of 0.5" out.txt
 
+# A mound with slopes, its armour from a table.
+printf 'y [cm],x [cm],note\n0,30,toe\n15,45,\n15,55,\n0,70,heel\n0,60,\n10,50,\n0,40,\n' > armour.csv
+cat > mound.json <<'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 0.2] }, "spacing": 0.0125, "end_time": 0.1,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [0.4, 0.2] } } ] } ],
+  "porous_zones": [ { "name": "core", "outline": { "points": [[0.4, 0], [0.5, 0.1], [0.6, 0]] },
+                      "stones": { "size": 0.02, "porosity": 0.4 } },
+                    { "name": "armour", "outline": { "file": "armour.csv" },
+                      "stones": { "size": 0.05, "porosity": 0.45 } } ],
+  "output": { "interval": 0.05, "probe_interval": 0.01, "frames": true } }
+END
+expect 0 "" run mound.json --out mound --quiet --threads 1
+expect 0 "" run mound.json --out mound_parts --quiet --threads 1 --until 0.05
+expect 0 "" resume mound_parts --quiet --threads 2 --until 0.1
+check "outlines: the same table after a resume" cmp mound/porous_zones.csv mound_parts/porous_zones.csv
+check "the table of the armour is an input" grep -q armour.csv mound/inputs.json
+expect 0 "" run mound/resolved.json --out mound_again --quiet --threads 1
+check "resolved.json runs alike" cmp mound/porous_zones.csv mound_again/porous_zones.csv
+expect 0 "" check mound.json
+check "check tells the area" grep -q "porous zone      armour: .*, in 0.0275 m2" out.txt
+expect 1 "the section of porous zone 'armour' overlaps that of 'core'" check mound.json \
+    --set 'porous_zones.core.outline.points=[[0.3,0],[0.5,0.1],[0.6,0]]'
+
 refuse() { local text=$1; shift; expect 1 "$text" check channel.json --set "$@"; }
 refuse "has more than one of stones, stems, screen and resistance" porous_zones.kelp.screen.loss=1
 refuse "stones.porosity" porous_zones.mound.stones.porosity=1

@@ -269,15 +269,17 @@ static json_t *make_part(const tobi_part *part)
     return schema;
 }
 
-/* A region or a body is a box, a mesh, one of the other shapes or, of regions, what a vessel holds: the table
-   cannot say that one is needed. */
+/* A region or a body is a box, a mesh, one of the other shapes or, of regions, what a vessel holds; a porous
+   zone is a box or an outline. The table cannot say that one is needed. */
 static void require_region(json_t *schema)
 {
     json_t *properties = json_object_get(schema, "properties"), *box = json_object_get(properties, "box");
     json_t *sphere = json_object_get(properties, "sphere"), *shapes;
     require(box, "min");
     require(box, "max");
-    shapes = json_pack("[{s[s]}{s[s]}]", "required", "box", "required", "mesh");
+    shapes = json_pack("[{s[s]}]", "required", "box");
+    if (json_object_get(properties, "mesh"))
+        json_array_append_new(shapes, json_pack("{s[s]}", "required", "mesh"));
     if (sphere) {
         if (!json_object_get(properties, "plate")) require(sphere, "centre");
         require(sphere, "radius");
@@ -306,7 +308,8 @@ static json_t *make_table(const tobi_param_table *table)
     put_text(schema, "description", table->doc);
     for (const tobi_param *row = table->rows; row->key; row++) put_row(schema, row, def);
     free(def);
-    if (table == &tobi_fill_table || table == &tobi_body_table) require_region(schema);
+    if (table == &tobi_fill_table || table == &tobi_body_table || table == &tobi_porous_table)
+        require_region(schema);
     tobi_part part;
     for (int i = 0; tobi_part_at(i, &part); i++) {
         if (strcmp(part.owner, table->name) != 0) continue;
