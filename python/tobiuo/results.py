@@ -63,16 +63,17 @@ class Results:
         finally:
             lib.tobi_moment_free(m)
 
-    def sample(self, output, places, fields=None, fluid=None, threads=0):
+    def sample(self, output, places, fields=None, fluid=None, threads=0, solid=None):
         """Fields of the liquids of an output at places (m, k x 2 or k x 3): a Sample with `wet` and `fields`, as
-        "tobiuo sample" finds them. fields: names, without them all; fluid: the name of one."""
+        "tobiuo sample" finds them. fields: names, of components too ("velocity_x"), without them all; fluid,
+        solid: the name of one."""
         moment = self[output]
         points, count = ffi.new("double (**)[3]"), ffi.new("int64_t *")
         call(lib.tobi_results_read_bodies, self._results, output % len(self), points, count)
         solids = array_of(points[0], (count[0], 3))
         free_pointer(points[0])
         scene = sampling.read_scene(self.folder/"resolved.json")
-        return sampling.of_scene(places, scene, moment, solids, fields, fluid, threads)
+        return sampling.of_scene(places, scene, moment, solids, fields, fluid, solid, threads)
 
     def table(self, name="history", of=None):
         """A table of the run, "history", "bodies", "probes" ...: read_table of its file."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .library import call, ffi, lib
+from .library import call, ffi, lib, text_of
 
 
 @dataclass
@@ -65,24 +65,49 @@ def thin(points, spacing):
     return points[np.sort(rows)]
 
 
-def of_scene(places, scene, moment, solids, names, fluid=None, threads=0):
-    """The liquids of an output: scene is its resolved.json."""
-    fluids = [f["name"] for f in scene["fluids"]]
-    if fluid is not None and fluid not in fluids:
-        raise KeyError(f"{fluid!r}; fluids are: {', '.join(fluids) or 'none'}")
-    material = moment.fields.get("material", np.zeros(len(moment.positions)))
-    ours = material == fluids.index(fluid) if fluid is not None else material < len(fluids)
-    for name in names or ():
-        if name not in moment.fields:
-            raise KeyError(f"{name!r}; fields are: {', '.join(moment.fields)}")
+def _choose(materials, kind, name):
+    """The number of a fluid or solid by its name."""
+    names = [m["name"] for m in materials[kind]]
+    if name not in names:
+        raise KeyError(f"{name!r}; {kind} are: {', '.join(names) or 'none'}")
+    return names.index(name) + (len(materials["fluids"]) if kind == "solids" else 0)
+
+
+def _field(moment, name):
+    """A field, or a component of one, "velocity_x"."""
+    component = ffi.new("int *")
+    whole = lib.tobi_world_find_field(name.encode(), component, ffi.NULL)
+    whole = name if name in moment.fields or whole == ffi.NULL else text_of(whole)
+    if whole not in moment.fields:
+        raise KeyError(f"{name!r}; fields are: {', '.join(moment.fields)}")
+    values = moment.fields[whole]
+    return values if whole == name else values[:, component[0]]
+
+
+def of_scene(places, scene, moment, bodies, names, fluid=None, solid=None, threads=0):
+    """The liquids of an output, or one of its materials: scene is its resolved.json."""
+    materials = {kind: scene.get(kind, []) for kind in ("fluids", "solids")}
+    is_liquid = [True]*len(materials["fluids"]) + [s["model"] == "liquid" for s in materials["solids"]]
+    if fluid is not None and solid is not None:
+        raise ValueError("fluid or solid, not both")
+    chosen = ([_choose(materials, "fluids", fluid)] if fluid is not None else
+              [_choose(materials, "solids", solid)] if solid is not None else
+              [k for k, liquid in enumerate(is_liquid) if liquid])
+    if not chosen:
+        raise ValueError("a run without a liquid; solid takes the name of a solid")
+    ours = np.isin(moment.fields.get("material", np.zeros(len(moment.positions))), chosen)
+    names = [names] if isinstance(names, str) else names
     labels = ("material", "part", "piece", "cut_side")
     names = names or [n for n in moment.fields if n not in labels and "_id" not in n]
-    finer = any(not isinstance(b["spacing"], str) and b["spacing"] < scene["spacing"] for b in scene["bodies"])
+    own = scene.get("mlsmpm", {}).get("spacing")
+    spacing = own if chosen[0] >= len(materials["fluids"]) and not isinstance(own, (str, type(None))) else scene["spacing"]
+    finer = any((scene["spacing"] if isinstance(b["spacing"], str) else b["spacing"]) < 0.99*spacing
+                for b in scene.get("bodies", []))
     domain = scene["domain"]
-    return sample(places, moment.positions[ours], {n: moment.fields[n][ours] for n in names}, scene["spacing"],
+    return sample(places, moment.positions[ours], {n: _field(moment, n)[ours] for n in names}, spacing,
                   (domain["min"], domain["max"]), scene["dimension"],
                   [domain["walls"][a][0] == "periodic" for a in "xyz"],
-                  thin(solids, scene["spacing"]) if finer else solids, threads)
+                  thin(bodies, spacing) if finer else bodies, threads)
 
 
 def read_scene(path):

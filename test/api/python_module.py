@@ -72,12 +72,39 @@ class Module(unittest.TestCase):
             self.assertTrue(np.array_equal(np.isnan(values), ~found.wet))
             np.testing.assert_allclose(values[found.wet], told[found.wet], rtol=1e-8, atol=1e-12)
         self.assertEqual(list(results.sample(0, places, ["density"], fluid="water").fields), ["density"])
+        parts = results.sample(-1, places, "velocity_y").fields
+        np.testing.assert_array_equal(parts["velocity_y"], found.fields["velocity"][:, 1])
+        with self.assertRaisesRegex(KeyError, "velocity_w.*velocity"):
+            results.sample(0, places, ["velocity_w"])
         with self.assertRaisesRegex(KeyError, "heat.*velocity"):
             results.sample(0, places, ["heat"])
         with self.assertRaisesRegex(KeyError, "oil.*water"):
             results.sample(0, places, fluid="oil")
         with self.assertRaisesRegex(ValueError, "places"):
             results.sample(0, [1, 2])
+
+    def test_solids_at_places_are_those_of_the_program(self):
+        def box(low, high):
+            return [{"box": {"min": low, "max": high}}]
+        scene = {"dimension": 2, "method": "mlsmpm", "domain": {"min": [0, 0], "max": [0.6, 0.6]}, "spacing": 0.04,
+                 "end_time": 0.02, "mlsmpm": {"spacing": 0.02}, "output": {"interval": 0.02},
+                 "solids": [{"name": "pool", "model": "liquid", "fill": box([0, 0], [0.6, 0.4])},
+                            {"name": "cube", "youngs_modulus": 1e5, "fill": box([0.2, 0.42], [0.3, 0.52])}]}
+        pathlib.Path("solid.json").write_text(json.dumps(scene), encoding="utf-8")
+        subprocess.run([program, "run", "solid.json", "--out", "solid", "--quiet"], check=True)
+        results = tobiuo.Results("solid")
+        for name in (None, "cube"):
+            subprocess.run([program, "sample", "solid", "--line", "0.25,0 to 0.25,0.6", "--count", "31", "--from",
+                            "0.02"] + (["--solid", name] if name else []), check=True, capture_output=True)
+            table = tobiuo.read_table("solid/sample/line.csv")
+            found = results.sample(-1, np.stack([table["x [m]"], table["y [m]"]], 1), solid=name)
+            self.assertTrue((found.wet == (table["wet"] == 1)).all() and 3 < found.wet.sum() < 25)
+            told = np.array([float(text) if text else np.nan for text in table["velocity_y [m/s]"]])
+            np.testing.assert_allclose(found.fields["velocity"][found.wet, 1], told[found.wet], rtol=1e-8, atol=1e-12)
+        with self.assertRaisesRegex(KeyError, "sponge.*pool, cube"):
+            results.sample(0, [[0, 0]], solid="sponge")
+        with self.assertRaisesRegex(ValueError, "not both"):
+            results.sample(0, [[0, 0]], fluid="pool", solid="cube")
 
     def test_fields_of_arrays(self):
         x = (np.stack(np.meshgrid(*[np.arange(8)]*3), -1).reshape(-1, 3) + 0.5)/8
