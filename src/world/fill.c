@@ -188,6 +188,12 @@ static int inside_region(const tobi_region *r, const tobi_bvh *tree, const doubl
     return !(r->radius > 0) || d2 < r->radius*r->radius;
 }
 
+double tobi_region_depth(const tobi_region *r, const tobi_bvh *tree, const double x[3], int dimension,
+                         double most)
+{
+    return tree && !tobi_bvh_inside(tree, x) ? -1 : find_depth(r, tree, x, dimension, most);
+}
+
 /* The lattice points inside a region, in the order of z, y, x; those outside the domain included. */
 static int64_t place_lattice(const tobi_system *s, const tobi_region *r, const tobi_bvh *tree,
                              double (*points)[3])

@@ -2,6 +2,7 @@
    minus those inside bodies and behind planes. */
 #pragma once
 #include "core/system.h"
+#include "geom/bvh.h"
 
 /* One region of one fluid or solid; its mesh is owned. */
 typedef struct tobi_region {
@@ -32,5 +33,9 @@ typedef struct tobi_region {
 double tobi_region_layers(const tobi_region *r, int axis, double spacing);
 /* Counts the lattice points of a region, an upper bound (bodies are not cut out). */
 int64_t tobi_region_count(const tobi_system *s, const tobi_region *r);
+/* How deep a point of the world lies in a region, m, at most `most`; 0 or less: outside. tree: of its mesh;
+   NULL without one. */
+double tobi_region_depth(const tobi_region *r, const tobi_bvh *tree, const double x[3], int dimension,
+                         double most);
 /* Appends the region's particles to s->particles (capacity must suffice); counts what it left out. */
 tobi_status tobi_region_fill(tobi_system *s, tobi_region *r, tobi_error *err);

@@ -1,6 +1,7 @@
 /* The systems of a world: made with their method, filled, started, counted. Drawback: two at most, that of
    the definition's method and one for solids beside fluids. */
 #include "base/error.h"
+#include "world/apart.h"
 #include "world/fit.h"
 #include "base/param.h"
 #include "mpm/mlsmpm.h"
@@ -276,6 +277,7 @@ tobi_status tobi_world_fill_system(tobi_world *w, tobi_system *s, tobi_error *er
     TOBI_TRY(tobi_particles_reserve(&s->particles, s->method->fields, needed_fields(w, s), room, err));
     for (int k = 0; k < w->region_count; k++)
         if (&w->system[w->regions[k].system] == s) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    TOBI_TRY(tobi_regions_check_apart(s, (int)(s - w->system), w->regions, w->region_count, err));
     return s == &w->system[0] ? tobi_openings_fill(w, err) : TOBI_OK;
 }
 
