@@ -89,8 +89,8 @@ static void print_zones(const tobi_world *world, int dimension)
     for (int k = 0; (name = tobi_world_porous(world, k, &z)); k++) {
         printf("porous zone      %s: %.4g 1/s, %.4g 1/m", name, z.linear, z.quadratic);
         if (z.direction[0] != 0.0 || z.direction[1] != 0.0 || z.direction[2] != 0.0)
-            printf(" %s (%.3g, %.3g, %.3g)", z.along ? "along" : "across", z.direction[0], z.direction[1],
-                   z.direction[2]);
+            printf(" %s (%.3g, %.3g, %.3g)", z.radial ? "away from" : z.along ? "along" : "across",
+                   z.direction[0], z.direction[1], z.direction[2]);
         printf(", in %.4g %s\n", z.extent, dimension == 2 ? "m2" : "m3");
     }
 }

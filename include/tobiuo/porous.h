@@ -7,14 +7,17 @@
 extern "C" {
 #endif
 
-/* A porous zone: a box or an outline whose contents resist liquids. The pressure falls by
+/* A porous zone: a box, an outline or a cylinder whose contents resist liquids. The pressure falls by
    rho (a u + b |u| u) per metre, u the filter velocity. What is in it is one of four; of the others all
    numbers are 0. */
 enum { TOBI_POROUS_LIMIT = 16 };
 typedef struct tobi_porous_def {
     const char *name;
-    double box_min[3], box_max[3];    /* m; both 0 with an outline                                     */
+    double box_min[3], box_max[3];    /* m; both 0 with another shape                                  */
     tobi_outline_def outline;         /* instead of the box                                            */
+    double cylinder_start[3], cylinder_end[3];     /* m: likewise, middles of the ends along x, y or z; in 2-D
+                                         the first is the middle of a disc                             */
+    double cylinder_radius, cylinder_inner;        /* m; 0 = no cylinder; above 0 = a ring             */
     double stone_size, porosity;      /* m, 1: of stones, a and b by van Gent (1995)                   */
     double linear_coefficient, quadratic_coefficient;    /* 1: alpha and beta of that                  */
     double stem_number, stem_diameter, stem_drag;        /* 1/m2, m, 1: of stems                       */
@@ -31,6 +34,7 @@ typedef struct tobi_porous_info {
     double linear, quadratic;         /* 1/s, 1/m: a and b, of the first fluid                         */
     double direction[3];              /* 0: all directions resist alike                                */
     int    along;                     /* 1: the direction resists, 0: what is across it                */
+    int    radial;                    /* 1: what resists is away from an axis, which has the direction */
     double extent;                    /* m3, in 2-D m2: of the zone itself                             */
 } tobi_porous_info;
 

@@ -153,10 +153,10 @@ TOBI_API tobi_status tobi_world_set_gravity(tobi_world *world, const double grav
 /* Before the start. A damping zone; TOBI_INVALID for boxes without an inside and for negative rates,
    TOBI_UNSUPPORTED in mlsmpm and for more than 16. */
 TOBI_API tobi_status tobi_world_add_damping(tobi_world *world, const tobi_damping_def *def, tobi_error *err);
-/* Before the start, after the fluids. A porous zone; TOBI_INVALID for boxes and outlines without an inside,
-   that cross themselves, outside of the domain or in another zone, and for one that has none or two kinds of
-   contents; TOBI_NOT_FOUND and TOBI_IO for the file of an outline; TOBI_UNSUPPORTED in mlsmpm, for more than
-   16, and for outlines along different axes whose boxes overlap. */
+/* Before the start, after the fluids. A porous zone; TOBI_INVALID for shapes without an inside, that cross
+   themselves, outside of the domain or in another zone, for oblique cylinders, and for a zone that has none
+   or two kinds of contents; TOBI_NOT_FOUND and TOBI_IO for the file of an outline; TOBI_UNSUPPORTED in
+   mlsmpm, for more than 16, and for outlines and cylinders along different axes whose boxes overlap. */
 TOBI_API tobi_status tobi_world_add_porous(tobi_world *world, const tobi_porous_def *def, tobi_error *err);
 /* Name and, if info is not NULL, what it does; NULL past the end. */
 TOBI_API const char *tobi_world_porous(const tobi_world *world, int zone, tobi_porous_info *info);

@@ -1,17 +1,22 @@
-/* Porous zones: boxes and prisms over polygons whose contents resist liquids. */
+/* Porous zones: boxes, prisms over polygons and cylinders whose contents resist liquids. */
 #pragma once
 #include "geom/polygon.h"
 #include "tobiuo/types.h"
 
 enum { TOBI_POROUS_ALL, TOBI_POROUS_ACROSS, TOBI_POROUS_ALONG };
+enum { TOBI_POROUS_FACETS = 96 };       /* of a circle: its corners begin anew after so many and one */
 
 /* Places from the lower corner of the box of the world. */
 typedef struct tobi_porous {
     char name[64];
     double lower[3], upper[3];      /* m, of its box; upper is outside                                    */
-    double (*corners)[2];           /* m, owned by the world: of its outline; NULL = all of its box       */
+    double (*corners)[2];           /* m, owned by the world: of its outline, about that of its cylinder;
+                                       NULL = all of its box                                              */
     int64_t corner_count;
     int axis, plane[2];             /* of the outline: of its extrusion, and of its corners               */
+    double centre[2];               /* m, in that plane, of its cylinder                                  */
+    double radius, inner;           /* m; 0 = no cylinder                                                 */
+    int radial;                     /* 1: the direction is that away from the centre                      */
     double extent, thickness;       /* m3, in 2-D m2, of the zone; m, of its thin direction               */
     int kind;                       /* which velocities feel it, against `direction`: TOBI_POROUS_*       */
     double direction[3];            /* unit vector                                                        */
@@ -32,5 +37,9 @@ static inline int tobi_porous_holds(const tobi_porous *z, int dimension, const d
     int inside = 1;
     for (int a = 0; a < dimension; a++) inside &= x[a] >= z->lower[a] && x[a] < z->upper[a];
     if (!inside || !z->corners) return inside;
+    if (z->radius > 0) {
+        const double u = x[z->plane[0]] - z->centre[0], v = x[z->plane[1]] - z->centre[1], r2 = u*u + v*v;
+        return r2 < z->radius*z->radius && r2 >= z->inner*z->inner;
+    }
     return tobi_polygon_holds(tobi_porous_polygon(z), (double[]){ x[z->plane[0]], x[z->plane[1]] });
 }

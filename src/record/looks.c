@@ -142,6 +142,8 @@ static void add_edge(tobi_looks *looks, const double a[3], const double b[3])
 static void add_prism(const tobi_porous *z, const double from[3], tobi_looks *looks)
 {
     for (int64_t k = 0; k < z->corner_count; k++) {
+        const int64_t turn = z->radius > 0 ? k%(TOBI_POROUS_FACETS + 1) : 0;
+        if (turn == TOBI_POROUS_FACETS) continue;        /* from the outer circle to the inner one */
         double at[2][2][3] = { 0 };       /* of both ends of the extrusion, of this corner and the next */
         for (int end = 0; end < 2; end++)
             for (int n = 0; n < 2; n++) {
@@ -153,7 +155,7 @@ static void add_prism(const tobi_porous *z, const double from[3], tobi_looks *lo
         add_edge(looks, at[0][0], at[0][1]);
         if (looks->dimension == 2) continue;
         add_edge(looks, at[1][0], at[1][1]);
-        add_edge(looks, at[0][0], at[1][0]);
+        if (turn%(TOBI_POROUS_FACETS/4) == 0) add_edge(looks, at[0][0], at[1][0]);
     }
 }
 

@@ -340,23 +340,27 @@ static void check_planes(const tobi_scene *scene, tobi_source *source)
     }
 }
 
-/* A zone is a box with both corners or an outline. */
+/* A zone is a box with both corners, an outline or a cylinder. */
 static void check_porous(const tobi_scene *scene, tobi_source *source)
 {
     const tobi_place zones = { &root, "porous_zones", 0 };
     for (int i = 0; i < scene->tank.porous_count && !tobi_report_full(source->report); i++) {
         const tobi_place entry = { &zones, NULL, (size_t)i }, at_box = { &entry, "box", 0 };
-        const tobi_place at_outline = { &entry, "outline", 0 };
+        const tobi_place at_outline = { &entry, "outline", 0 }, at_cylinder = { &entry, "cylinder", 0 };
         const json_t *zone = json_array_get(json_object_get(scene->root, zones.key), (size_t)i);
         const json_t *box = json_object_get(zone, "box"), *outline = json_object_get(zone, "outline");
+        const json_t *cylinder = json_object_get(zone, "cylinder");
+        const int shapes = !!box + !!outline + !!cylinder;
         if (!json_is_object(zone)) continue;
-        if (!box == !outline)
-            tobi_source_mistake(source, &entry, "must have one of box and outline, it has %s",
-                                box ? "both" : "none");
+        if (shapes != 1)
+            tobi_source_mistake(source, &entry, "must have one of box, outline and cylinder, it has %s",
+                                shapes ? "several" : "none");
         else if (box && !(json_object_get(box, "min") && json_object_get(box, "max")))
             tobi_source_mistake(source, &at_box, "must have two corners, min and max");
         else if (outline && !json_object_get(outline, "points") && !json_object_get(outline, "file"))
             tobi_source_mistake(source, &at_outline, "must have points or a file");
+        else if (cylinder && !json_object_get(cylinder, "radius"))
+            tobi_source_mistake(source, &at_cylinder, "must have a radius");
         else if (outline)
             tobi_check_outline(source, &at_outline, &scene->tank.porous[i].outline, scene->world.dimension);
     }

@@ -87,7 +87,11 @@ static int write_zones(const tobi_scene_tank *t, json_t *root)
         failed |= json_array_append_new(zones, tobi_write_def(&tobi_damping_table, &t->damping[k]));
     for (int k = 0; k < t->porous_count; k++) {
         json_t *zone = tobi_write_def(&tobi_porous_table, &t->porous[k]);
-        json_object_del(zone, tobi_outline_given(&t->porous[k].outline) ? "box" : "outline");
+        const int outline = tobi_outline_given(&t->porous[k].outline);
+        const int round = t->porous[k].cylinder_radius > 0;
+        if (outline || round) json_object_del(zone, "box");
+        if (!outline) json_object_del(zone, "outline");
+        if (!round) json_object_del(zone, "cylinder");
         failed |= json_array_append_new(porous, zone);
     }
     if (t->damping_count) failed |= json_object_set(root, "damping_zones", zones);

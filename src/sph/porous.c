@@ -16,13 +16,30 @@ static const tobi_porous *find_zone(const tobi_system *s, const double *x, int *
     return NULL;
 }
 
+/* Along stems or across a screen at a place; n is a unit vector. */
+static void find_normal(const tobi_porous *z, const double *x, double n[3])
+{
+    for (int a = 0; a < 3; a++) n[a] = z->radial ? 0 : z->direction[a];
+    if (!z->radial) return;
+    const double u = x[z->plane[0]] - z->centre[0], v = x[z->plane[1]] - z->centre[1], r = hypot(u, v);
+    n[z->plane[0]] = u/r, n[z->plane[1]] = v/r;       /* a ring, so that r is above 0 */
+}
+
+/* The same as at the begin of the step, though the particle has moved. */
+static void recall_normal(const tobi_porous *z, tobi_float4 drag, double n[3])
+{
+    const double length = sqrt((double)drag.x*drag.x + (double)drag.y*drag.y + (double)drag.z*drag.z);
+    const double by = length > 0 ? 1/length : 0, given[3] = { by*drag.x, by*drag.y, by*drag.z };
+    for (int a = 0; a < 3; a++) n[a] = z->radial ? given[a] : z->direction[a];
+}
+
 /* P u, into out; returns its size. */
-static double take_part(const tobi_porous *z, const double u[3], double out[3])
+static double take_part(const tobi_porous *z, const double n[3], const double u[3], double out[3])
 {
     double along = 0, size2 = 0;
-    for (int a = 0; a < 3; a++) along += z->direction[a]*u[a];
+    for (int a = 0; a < 3; a++) along += n[a]*u[a];
     for (int a = 0; a < 3; a++) {
-        const double part = along*z->direction[a];
+        const double part = along*n[a];
         out[a] = z->kind == TOBI_POROUS_ALL ? u[a] : z->kind == TOBI_POROUS_ALONG ? part : u[a] - part;
         size2 += out[a]*out[a];
     }
@@ -35,11 +52,11 @@ static double find_linear(const tobi_system *s, const tobi_porous *z, int64_t i)
     return z->linear + z->per_viscosity*f->viscosity/f->density;
 }
 
-static tobi_float4 encode(const tobi_porous *z, double c)
+static tobi_float4 encode(const tobi_porous *z, const double n[3], double c)
 {
     const double root = z->kind == TOBI_POROUS_ALL ? 0 : sqrt(c);
-    return (tobi_float4){ (float)(root*z->direction[0]), (float)(root*z->direction[1]),
-                          (float)(root*z->direction[2]), z->kind == TOBI_POROUS_ALONG ? 0 : (float)c };
+    return (tobi_float4){ (float)(root*n[0]), (float)(root*n[1]), (float)(root*n[2]),
+                          z->kind == TOBI_POROUS_ALONG ? 0 : (float)c };
 }
 
 static void begin_range(const void *view, int64_t begin, int64_t end, double *totals)
@@ -51,14 +68,15 @@ static void begin_range(const void *view, int64_t begin, int64_t end, double *to
     for (int64_t i = begin; i < end; i++) {
         const tobi_float4 v = s->particles.velocity[i];
         const double u[3] = { v.x, v.y, v.z };
-        double part[3];
+        double part[3], n[3];
         int k = 0;
         const int held = sph_of(s)->marked && f->held && f->held[i].w != 0;
         const tobi_porous *z = held ? NULL : find_zone(s, &s->particles.position[i].x, &k);
         f->porous[i] = f->porous_before[i] = none;
         if (!z) continue;
-        const double speed = take_part(z, u, part);
-        f->porous[i] = encode(z, s->dt*(find_linear(s, z, i) + 2*z->quadratic*speed));
+        find_normal(z, &s->particles.position[i].x, n);
+        const double speed = take_part(z, n, u, part);
+        f->porous[i] = encode(z, n, s->dt*(find_linear(s, z, i) + 2*z->quadratic*speed));
         f->porous_before[i] = (tobi_float4){ v.x, v.y, v.z, (float)(k + 1) };
     }
 }
@@ -78,9 +96,10 @@ static void brake_range(const void *view, int64_t begin, int64_t end, double *to
         if (!(f->porous_before[i].w > 0)) continue;
         const tobi_porous *z = &s->sim->porous[(int)f->porous_before[i].w - 1];
         const double before[3] = { f->porous_before[i].x, f->porous_before[i].y, f->porous_before[i].z };
-        double part[3];
+        double part[3], n[3];
         float x[3], *u = &s->particles.velocity[i].x;
-        const double push = s->dt*z->quadratic*take_part(z, before, part);
+        recall_normal(z, f->porous[i], n);
+        const double push = s->dt*z->quadratic*take_part(z, n, before, part);
         for (int a = 0; a < 3; a++) x[a] = (float)(u[a] + push*part[a]);
         sph_porous_yield(f->porous[i], x);
         for (int a = 0; a < s->box.dimension; a++) u[a] = x[a];
@@ -108,9 +127,10 @@ static void measure_range(const void *view, int64_t begin, int64_t end, double *
         const double mass = s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
         const tobi_float4 v = s->particles.velocity[i];
         const float u[3] = { v.x, v.y, v.z };
-        double was[3];
+        double was[3], n[3];
         float part[3];
-        const double push = s->dt*z->quadratic*take_part(z, before, was);
+        recall_normal(z, f->porous[i], n);
+        const double push = s->dt*z->quadratic*take_part(z, n, before, was);
         sph_porous_part(f->porous[i], u, part);
         for (int a = 0; a < s->box.dimension; a++) {
             const double force = mass*(part[a] - push*was[a])/s->dt;

@@ -64,6 +64,14 @@ static const tobi_param porous_rows[] = {
     { .key = "box.max", VEC3, AT(tobi_porous_def, box_max), PLACE, .unit = "m",
       .doc = "Upper corner of the zone." },
     OUTLINE_ROWS(tobi_porous_def, outline),
+    { .key = "cylinder.start", VEC3, AT(tobi_porous_def, cylinder_start), PLACE, .unit = "m",
+      .doc = "Middle of one end of a cylinder along x, y or z; in 2-D of a disc." },
+    { .key = "cylinder.end", VEC3, AT(tobi_porous_def, cylinder_end), PLACE, .unit = "m",
+      .doc = "Middle of its other end; in 2-D it is not read." },
+    { .key = "cylinder.radius", REAL, AT(tobi_porous_def, cylinder_radius), LENGTHS, .unit = "m",
+      .text = "none", .doc = "Its radius." },
+    { .key = "cylinder.inner_radius", REAL, AT(tobi_porous_def, cylinder_inner), LENGTHS, .unit = "m",
+      .text = "none", .doc = "Within it there is no zone: a ring, as the net of a cage." },
     { .key = "stones.size", REAL, AT(tobi_porous_def, stone_size), RANGE(1e-6, 1e3), .unit = "m",
       .text = "none", .doc = "Median diameter D of stones, by which they resist after van Gent (1995)." },
     { .key = "stones.porosity", REAL, AT(tobi_porous_def, porosity), RANGE(0.01, 0.99), .unit = "1",
@@ -86,11 +94,10 @@ static const tobi_param porous_rows[] = {
       .doc = "b of that formula." },
     { .key = "direction", VEC3, AT(tobi_porous_def, direction), DIRECTION, .unit = "1",
       .doc = "Along stems, or across a screen. 0: stems stand upwards, a screen lies across the thinnest "
-             "side of its box, or along the longest side of its outline." },
+             "side of its box, along the longest side of its outline, or around its ring." },
     { 0 }
 };
 
 const tobi_param_table tobi_porous_table = {
-    "porous_zone", "A box or an outline whose contents resist liquids: one of stones, stems, screen and "
-    "resistance.",
+    "porous_zone", "A shape whose contents resist liquids: one of stones, stems, screen and resistance.",
     sizeof(tobi_porous_def), porous_rows };

@@ -42,6 +42,10 @@ static tobi_status find_direction(const tobi_world *w, const tobi_porous_def *de
     const int dimension = w->system[0].box.dimension, given = vec3_length(def->direction) > 0;
     memcpy(z->direction, def->direction, sizeof z->direction);
     if (!given && z->kind == TOBI_POROUS_ALONG) tobi_porous_thin_direction(z, dimension, z->direction);
+    if (z->radial) return TOBI_OK;
+    if (z->kind == TOBI_POROUS_ALONG && !(vec3_length(z->direction) > 0))
+        REFUSE("direction", "porous zone '%s': a screen in a cylinder without an inner radius has no thin "
+               "side; give its direction", def->name);
     if (!given && z->kind == TOBI_POROUS_ACROSS) vec3_sub(z->direction, z->direction, w->sim.def.gravity);
     if (!(vec3_length(z->direction) > 0))
         REFUSE("direction", "porous zone '%s': stems stand upwards, and there is no gravity; give their "
@@ -125,10 +129,11 @@ const char *tobi_world_porous(const tobi_world *w, int zone, tobi_porous_info *i
     if (!info) return z->name;
     *info = (tobi_porous_info){ .power = z->power, .volume = z->volume, .quadratic = z->quadratic,
                                 .linear = z->linear, .along = z->kind == TOBI_POROUS_ALONG,
-                                .extent = z->extent };
+                                .extent = z->extent, .radial = z->radial };
     if (w->system[0].fluid_count > 0) info->linear += z->per_viscosity*f->viscosity/f->density;
     memcpy(info->force, z->force, sizeof info->force);
     if (z->kind != TOBI_POROUS_ALL) memcpy(info->direction, z->direction, sizeof info->direction);
+    if (z->radial) info->direction[z->axis] = 1;
     return z->name;
 }
 

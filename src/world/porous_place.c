@@ -1,13 +1,15 @@
-/* Where porous zones lie: their boxes and outlines, and that they do not overlap. Drawback: outlines along
-   different axes are told apart by their boxes alone. */
+/* Where porous zones lie: their boxes, outlines and cylinders, and that they do not overlap. Drawback: shapes
+   along different axes are told apart by their boxes alone. */
 #include "base/error.h"
 #include "geom/outline.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 /* Of the smaller zone: outlines that users round overlap by slivers. */
 static const double SLIVER = 0.01;
+enum { FACETS = TOBI_POROUS_FACETS };
 
 #define REFUSE(status, key, ...) \
     return tobi_at_key(err, tobi_fail(err, status, __VA_ARGS__), "%s", key)
@@ -64,6 +66,57 @@ static tobi_status lay_outline(const tobi_box *box, const tobi_porous_def *def, 
     return TOBI_OK;
 }
 
+/* About its section, for pictures and overlaps; a ring goes around outside and back inside. */
+static tobi_status draw_circle(tobi_porous *z, tobi_error *err)
+{
+    const int rings = z->inner > 0 ? 2 : 1, points = rings == 2 ? FACETS + 1 : FACETS;
+    z->corners = malloc((size_t)(rings*points)*sizeof *z->corners);
+    if (!z->corners) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a shape");
+    z->corner_count = rings*points;
+    for (int k = 0; k < rings*points; k++) {
+        const double turn = 2*M_PI*(k < points ? k : 2*points - 1 - k)/FACETS;
+        const double r = k < points ? z->radius : z->inner;
+        z->corners[k][0] = z->centre[0] + r*cos(turn);
+        z->corners[k][1] = z->centre[1] + r*sin(turn);
+    }
+    return TOBI_OK;
+}
+
+static tobi_status lay_cylinder(const tobi_box *box, const tobi_porous_def *def, tobi_porous *z,
+                                tobi_error *err)
+{
+    const double *a = def->cylinder_start, *b = def->cylinder_end;
+    int ways = 0;
+    z->axis = 2;
+    for (int n = 0; n < box->dimension && box->dimension == 3; n++)
+        if (a[n] != b[n]) ways++, z->axis = n;
+    if (box->dimension == 3 && ways != 1)
+        return tobi_fail(err, TOBI_INVALID, "porous zone '%s': its cylinder goes from (%g, %g, %g) to "
+                         "(%g, %g, %g) m: allowed are cylinders along x, y or z", def->name, a[0], a[1], a[2],
+                         b[0], b[1], b[2]);
+    if (!(def->cylinder_inner < def->cylinder_radius))
+        return tobi_fail(err, TOBI_INVALID, "porous zone '%s': its inner radius is %g m, its radius %g m; "
+                         "allowed are smaller inner ones", def->name, def->cylinder_inner,
+                         def->cylinder_radius);
+    tobi_outline_axes(z->axis, z->plane);
+    z->radius = def->cylinder_radius;
+    z->inner = def->cylinder_inner;
+    z->extent = M_PI*(z->radius*z->radius - z->inner*z->inner);
+    z->thickness = z->inner > 0 ? z->radius - z->inner : 2*z->radius;
+    for (int n = 0; n < 2; n++) {
+        z->centre[n] = a[z->plane[n]] - box->lower[z->plane[n]];
+        z->lower[z->plane[n]] = z->centre[n] - z->radius;
+        z->upper[z->plane[n]] = z->centre[n] + z->radius;
+    }
+    if (box->dimension == 3) {
+        z->lower[z->axis] = fmin(a[z->axis], b[z->axis]) - box->lower[z->axis];
+        z->upper[z->axis] = fmax(a[z->axis], b[z->axis]) - box->lower[z->axis];
+        z->extent *= z->upper[z->axis] - z->lower[z->axis];
+        z->thickness = fmin(z->thickness, z->upper[z->axis] - z->lower[z->axis]);
+    }
+    return draw_circle(z, err);
+}
+
 static int boxes_overlap(const tobi_porous *a, const tobi_porous *b, int dimension)
 {
     int apart = 0;
@@ -91,9 +144,9 @@ static tobi_status check_overlap(const tobi_porous *z, const tobi_porous *other,
     if (!z->corners && !other->corners)
         REFUSE(TOBI_INVALID, "box", "porous zone '%s' overlaps '%s': allowed are boxes that touch at most",
                name, other->name);
-    const char *key = z->corners ? "outline" : "box";
+    const char *key = z->radius > 0 ? "cylinder" : z->corners ? "outline" : "box";
     if (z->corners && other->corners && z->axis != other->axis)
-        REFUSE(TOBI_UNSUPPORTED, key, "the outlines of the porous zones '%s' and '%s' go along different "
+        REFUSE(TOBI_UNSUPPORTED, key, "the porous zones '%s' and '%s' go along different "
                "axes, and the boxes around them overlap: allowed are such that touch at most", name,
                other->name);
     const tobi_polygon a = cut(z, drawn->plane, room[0]), b = cut(other, drawn->plane, room[1]);
@@ -108,17 +161,19 @@ tobi_status tobi_porous_place(const tobi_world *w, const tobi_porous_def *def, t
                               tobi_error *err)
 {
     const tobi_box *box = &w->system[0].box;
-    const int outline = tobi_outline_given(&def->outline);
+    const int outline = tobi_outline_given(&def->outline), cylinder = def->cylinder_radius > 0;
+    const char *key = outline ? "outline" : cylinder ? "cylinder" : "box";
     int boxed = 0;
     for (int a = 0; a < box->dimension; a++) boxed |= def->box_min[a] != 0 || def->box_max[a] != 0;
-    if (outline && boxed)
-        return tobi_fail(err, TOBI_INVALID, "porous zone '%s' has a box and an outline; it may have one",
-                         def->name);
-    if (outline) TOBI_TRY(tobi_at_key(err, lay_outline(box, def, z, err), "outline"));
-    else TOBI_TRY(lay_box(box, def, z, err));
+    if (outline + cylinder + boxed > 1)
+        return tobi_fail(err, TOBI_INVALID, "porous zone '%s' has %d shapes; it may have one: a box, an "
+                         "outline or a cylinder", def->name, outline + cylinder + boxed);
+    TOBI_TRY(tobi_at_key(err, outline ? lay_outline(box, def, z, err)
+                              : cylinder ? lay_cylinder(box, def, z, err)
+                                         : lay_box(box, def, z, err), "%s", key));
     for (int a = 0; a < box->dimension; a++)
         if (!(z->lower[a] < box->size[a] && z->upper[a] > 0))
-            REFUSE(TOBI_INVALID, outline ? "outline" : "box", "porous zone '%s' lies from %g to %g m in %c, "
+            REFUSE(TOBI_INVALID, key, "porous zone '%s' lies from %g to %g m in %c, "
                    "outside of the domain", def->name, z->lower[a] + box->lower[a],
                    z->upper[a] + box->lower[a], "xyz"[a]);
     for (int k = 0; k < w->sim.porous_count; k++)
@@ -141,10 +196,17 @@ static void find_thin_direction(const tobi_porous *z, int dimension, double dire
     direction[z->plane[1]] = along[0];
 }
 
-void tobi_porous_thin_direction(const tobi_porous *z, int dimension, double direction[3])
+void tobi_porous_thin_direction(tobi_porous *z, int dimension, double direction[3])
 {
     int thinnest = 0;
     for (int a = 0; a < 3; a++) direction[a] = 0;
+    if (z->radius > 0) {
+        const double length = dimension == 3 ? z->upper[z->axis] - z->lower[z->axis] : INFINITY;
+        const double wide = z->inner > 0 ? z->radius - z->inner : 2*z->radius;
+        if (length < wide) direction[z->axis] = 1;
+        else z->radial = z->inner > 0;
+        return;
+    }
     if (z->corners) {
         find_thin_direction(z, dimension, direction);
         return;
@@ -158,6 +220,7 @@ double tobi_porous_thickness(const tobi_porous *z, int dimension)
 {
     const double *d = z->direction;
     double least = INFINITY;
+    if (z->radial) return z->radius - z->inner;
     for (int a = 0; a < dimension; a++)
         if (fabs(d[a]) > 0 && (!z->corners || a == z->axis))
             least = fmin(least, (z->upper[a] - z->lower[a])/fabs(d[a]));

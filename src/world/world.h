@@ -89,8 +89,9 @@ tobi_status tobi_world_note_makers(tobi_world *w, tobi_error *err);
 /* A zone's place, box and thickness. z->corners is the caller's, after a failure too. porous_place.c */
 tobi_status tobi_porous_place(const tobi_world *w, const tobi_porous_def *def, tobi_porous *z,
                               tobi_error *err);
-/* A unit vector across its thin side; m: how thick it is along z->direction, in the mean. porous_place.c */
-void tobi_porous_thin_direction(const tobi_porous *z, int dimension, double direction[3]);
+/* A unit vector across its thin side; of a ring 0, and z->radial is set; of a long cylinder 0. m: how thick
+   it is along z->direction, in the mean. porous_place.c */
+void tobi_porous_thin_direction(tobi_porous *z, int dimension, double direction[3]);
 double tobi_porous_thickness(const tobi_porous *z, int dimension);
 /* Adds a note for each porous zone that is thin, has stones, or no liquid in it. porous.c */
 tobi_status tobi_world_note_porous(tobi_world *w, tobi_error *err);

@@ -236,7 +236,7 @@ static void wrong_outlines_are_refused(void **state)
     refuse(w, "0.3,0.1 and so on", TOBI_INVALID, "is no point");
     refuse(w, "1.2,0.1 1.5,0.1 1.4,0.2", TOBI_INVALID, "lies from 1.2 to 1.5 m in x, outside of the domain");
     z.box_max[0] = 1;
-    REFUSED(tobi_world_add_porous(w, &z, &err), TOBI_INVALID, "'new' has a box and an outline");
+    REFUSED(tobi_world_add_porous(w, &z, &err), TOBI_INVALID, "'new' has 2 shapes; it may have one");
     z = make_zone("new", NULL);
     z.outline.file = "missing.csv";
     REFUSED(tobi_world_add_porous(w, &z, &err), TOBI_NOT_FOUND, "missing.csv");
@@ -366,9 +366,9 @@ static void scene_says(const char *zone, const char *why)
 static void scenes_say_it(void **state)
 {
     (void)state;
-    scene_says("", "porous_zones[0]: must have one of box and outline, it has none");
+    scene_says("", "porous_zones[0]: must have one of box, outline and cylinder, it has none");
     scene_says(", \"box\": { \"min\": [0, 0], \"max\": [1, 1] }, \"outline\": { \"points\": [[0, 0], [1, 0], "
-               "[0, 1]] }", "must have one of box and outline, it has both");
+               "[0, 1]] }", "must have one of box, outline and cylinder, it has several");
     scene_says(", \"box\": { \"min\": [0, 0] }", "porous_zones[0].box: must have two corners, min and max");
     scene_says(", \"outline\": { \"base\": 0 }", "porous_zones[0].outline: must have points or a file");
     scene_says(", \"outline\": { \"file\": \"none.csv\" }", "porous_zones[0].outline.file: cannot find ");
