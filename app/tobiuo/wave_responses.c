@@ -10,6 +10,7 @@
 
 enum { MOTIONS = 6 };
 static const int FEW_ROWS = 10;       /* of a period: with fewer a cubic loses crests */
+static const double FEW_PERIODS = 8;  /* of fewer a gain is that of the waves that happened to come */
 
 /* One quantity over time. */
 typedef struct response {
@@ -378,6 +379,10 @@ static int tell(answers *a)
 {
     const wave_run *w = a->run;
     int code = take_waves(a);
+    const double periods = w->set.peak*(double)w->set.count*w->set.step;
+    if (!code && periods < FEW_PERIODS)
+        fprintf(stderr, "tobiuo: note: --response: %.2g periods of the waves; gains and phases of fewer than "
+                "%g are rough\n", periods, FEW_PERIODS);
     for (int k = 0; k < w->options->response_count && !code; k++) {
         const char *name = w->options->responses[k];
         for (int n = 0; n < k && !code; n++)

@@ -97,6 +97,7 @@ cp whole/bodies.csv anchored.csv
 awk -F, -v OFS=, '$2 == "raft" && $1 < 20 { $3 += 3 } { print }' anchored.csv > whole/bodies.csv
 expect 0 "" waves whole --gauges G1,G2,G3 --response raft --from 20
 near raft_x "phase [degrees]" 40 3
+expect 0 "periods of the waves; gains and phases of fewer than 8 are rough" waves whole --response raft --from 290
 mv anchored.csv whole/bodies.csv
 expect 0 "" waves whole --response raft
 check "without --gauges the first gauge" grep -q "^waves: G1" out.txt
