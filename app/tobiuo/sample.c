@@ -116,11 +116,11 @@ static int find_span(sample_run *s)
 /* The number of a fluid or solid by its name: fluids first, as files number them. */
 static int find_named(sample_run *s, const json_t *scene, const char *list, const char *name)
 {
-    const char *names[64];
+    const char *names[TOBI_SOLID_LIMIT];
     size_t count = 0;
     const size_t fluids = json_array_size(json_object_get(scene, "fluids"));
     const json_t *all = json_object_get(scene, list);
-    for (size_t k = 0; k < json_array_size(all) && count < 64; k++) {
+    for (size_t k = 0; k < json_array_size(all) && count < TOBI_SOLID_LIMIT; k++) {
         const char *own = json_string_value(json_object_get(json_array_get(all, k), "name"));
         names[count++] = own ? own : "";
         if (own && strcmp(own, name) == 0) s->material = (int)(k + (*list == 's' ? fluids : 0));

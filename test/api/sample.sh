@@ -170,6 +170,18 @@ expect 1 "beam has no field 'velocity_w'; did you mean velocity?" sample beam --
 expect 0 "" sample beam --box "0.3,0,0 to 0.4,0.1,0.1" --solid cube --fields velocity_z,stress_xz
 vtk "components in a grid" beam/sample/box_000001.vti 'arrays={"wet": 1, "velocity_z": 1, "stress_xz": 1}'
 
+# Each of many solids has its name, in any letters.
+$python - <<'END2'
+import json
+solids = [{"name": f"塊 {k}", "youngs_modulus": 1e5, "fill": [{"box": {"min": [k, 0], "max": [k + 1, 2]}}]} for k in range(80)]
+json.dump({"method": "mlsmpm", "dimension": 2, "domain": {"min": [0, 0], "max": [80, 2]}, "spacing": 0.5, "end_time": 1e-3,
+           "gravity": [0, 0], "solids": solids, "output": {"interval": 1e-3}}, open("many.json", "w"))
+END2
+expect 0 "" run many.json --out many --quiet
+expect 0 "" sample many --solid "塊 79" --line "79.2,1 to 79.8,1" --count 2 --from 0 --until 0
+check "the last of many solids" test "$(cut -d, -f7 many/sample/line.csv | tail -1)" = 1
+expect 1 "many has no solid '塊 99'; did you mean 塊 9?" sample many --solid "塊 99" --line "79.2,1 to 79.8,1"
+
 # Flows with exact solutions. The bound of the first is that of its case, test/physics/poiseuille.
 physics="$here/../physics"
 sed '/"dfsph"/d' "$physics/poiseuille/scene.json" > plates.json
