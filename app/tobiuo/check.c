@@ -95,6 +95,15 @@ static void print_zones(const tobi_world *world, int dimension)
     }
 }
 
+/* Temperature and concentration: their range after the first steps. */
+static void print_scalars(const tobi_world *world)
+{
+    tobi_scalar_info s;
+    for (int k = 0; tobi_world_scalar(world, k, &s); k++)
+        printf("%-16s %.4g to %.4g%s, mean %.4g\n", s.field, s.least, s.most,
+               strcmp(s.unit, "1") == 0 ? "" : " degC", s.mean);
+}
+
 /* The first steps of a run, and what they tell of all. */
 typedef struct trial {
     int steps;               /* taken; below 2 nothing is known             */
@@ -158,6 +167,7 @@ static void print_scene(const tobi_scene *scene, const tobi_world *world, const 
     print_solids(world, d->dimension);
     print_bodies(world, d->dimension);
     print_zones(world, d->dimension);
+    print_scalars(world);
     print_notes(world, stdout, "note             ");
     if (tobi_scene_import_table(scene))
         printf("\nA scene of %s. What became of its keys:\n\n%s\n", tobi_scene_import_program(scene),

@@ -19,7 +19,8 @@ static const struct argp_option options[] = {
     { "only", KEY_ONLY, "K", 0, "only the run number K, from 0, without the table", 0 },
     { "table", KEY_TABLE, NULL, 0, "run nothing; write the table and the plot of what there is", 0 },
     { "plot", KEY_PLOT, "COLUMN", 0,
-      "what the plot shows: a column of probes.csv, lines.csv, joints.csv, porous_zones.csv or history.csv; "
+      "what the plot shows: a column of probes.csv, lines.csv, joints.csv, porous_zones.csv, scalars.csv or "
+      "history.csv; "
       "or of a body: "
       "BODY_position_x, BODY_force_z", 0 },
     { "waves", KEY_WAVES, "OPTIONS", 0, "at the end \"tobiuo waves\" of each run with these options, and its "

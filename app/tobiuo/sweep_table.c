@@ -56,9 +56,9 @@ static void free_tables(table *list, int count)
 /* The table has the largest and the least value of such a column. body: of its rows; NULL: of all. */
 typedef struct measure { int file; const char *body, *column; } measure;
 
-enum { FILES = 5, BODIES = FILES - 1, MEASURES = 600 };
+enum { FILES = 6, BODIES = FILES - 1, MEASURES = 600 };
 static const char *const files[FILES] = { "probes.csv", "lines.csv", "joints.csv", "porous_zones.csv",
-                                          "bodies.csv" };
+                                          "scalars.csv", "bodies.csv" };
 
 typedef struct measures { table *of[FILES]; measure one[MEASURES]; int count; } measures;
 
@@ -306,9 +306,9 @@ static int add_curve(const table *t, const char *column, const char *label, int 
 /* The column of a run from the first of its tables that has it. */
 static int add_run(const sweep *s, int run, const char *column, panel *a, picture *p, char **name)
 {
-    enum { TABLES = 6 };
+    enum { TABLES = 7 };
     static const char *const from[TABLES] = { "probes.csv", "lines.csv", "joints.csv", "porous_zones.csv",
-                                              "history.csv", "bodies.csv" };
+                                              "scalars.csv", "history.csv", "bodies.csv" };
     int found = 0;
     for (int f = 0; f < TABLES && !found; f++) {
         table t = { 0 };
@@ -340,8 +340,8 @@ static int choose_columns(const sweep *s, const char *column[PANEL_LIMIT], table
 static int complain_column(const sweep *s)
 {
     complain("no run has a column \"%s\" in probes.csv, lines.csv, joints.csv, porous_zones.csv, "
-             "history.csv, nor is it one of bodies.csv behind the name of a body, as in BODY_position_x; "
-             "nothing is drawn", s->plot);
+             "scalars.csv, history.csv, nor is it one of bodies.csv behind the name of a body, as in "
+             "BODY_position_x; nothing is drawn", s->plot);
     return EXIT_ERROR;
 }
 

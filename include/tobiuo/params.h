@@ -72,6 +72,8 @@ TOBI_API extern const tobi_param_table tobi_gravity_table;
 TOBI_API extern const tobi_param_table tobi_central_table;
 TOBI_API extern const tobi_param_table tobi_damping_table;
 TOBI_API extern const tobi_param_table tobi_porous_table;
+TOBI_API extern const tobi_param_table tobi_scalar_table;
+TOBI_API extern const tobi_param_table tobi_scalar_value_table;
 /* Whether gravity can follow it, its file included. */
 TOBI_API tobi_status tobi_gravity_check(const tobi_gravity_def *def, tobi_error *err);
 

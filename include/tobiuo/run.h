@@ -122,11 +122,12 @@ TOBI_API tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_er
 TOBI_API void tobi_run_free(tobi_run *run);
 
 /* The tables of a run; probes.csv has columns by the kinds of its sensors, lines.csv, joints.csv and
-   porous_zones.csv for each line, joint and zone. */
+   porous_zones.csv for each line, joint and zone, scalars.csv for each scalar and each wall that has one. */
 typedef enum tobi_table {
     TOBI_TABLE_HISTORY, TOBI_TABLE_BODIES, TOBI_TABLE_POINT, TOBI_TABLE_LEVEL, TOBI_TABLE_PATCH,
     TOBI_TABLE_RUN_UP, TOBI_TABLE_FLOW, TOBI_TABLE_VOLUME,     /* in the order of tobi_probe_kind */
-    TOBI_TABLE_SOLIDS, TOBI_TABLE_LINES, TOBI_TABLE_JOINTS, TOBI_TABLE_POROUS
+    TOBI_TABLE_SOLIDS, TOBI_TABLE_LINES, TOBI_TABLE_JOINTS, TOBI_TABLE_POROUS,
+    TOBI_TABLE_SCALARS, TOBI_TABLE_SCALAR_FLOWS
 } tobi_table;
 typedef struct tobi_column {
     const char *name, *unit;        /* "1": without a unit                                      */

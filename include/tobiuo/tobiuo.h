@@ -62,6 +62,8 @@ TOBI_API tobi_gravity_def tobi_default_gravity_def(void);
 TOBI_API tobi_central_def tobi_default_central_def(void);
 TOBI_API tobi_damping_def tobi_default_damping_def(void);
 TOBI_API tobi_porous_def tobi_default_porous_def(void);
+TOBI_API tobi_scalar_def tobi_default_scalar_def(void);
+TOBI_API tobi_scalar_value_def tobi_default_scalar_value_def(void);
 
 /* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def, ...), NULL = its
    defaults. On failure *world is NULL and err says why. */
@@ -160,6 +162,18 @@ TOBI_API tobi_status tobi_world_add_damping(tobi_world *world, const tobi_dampin
 TOBI_API tobi_status tobi_world_add_porous(tobi_world *world, const tobi_porous_def *def, tobi_error *err);
 /* Name and, if info is not NULL, what it does; NULL past the end. */
 TOBI_API const char *tobi_world_porous(const tobi_world *world, int zone, tobi_porous_info *info);
+/* Before the start. Temperature or concentration of the liquids; TOBI_INVALID for one that is given already,
+   TOBI_UNSUPPORTED in mlsmpm. */
+TOBI_API tobi_status tobi_world_add_scalar(tobi_world *world, const tobi_scalar_def *def, tobi_error *err);
+/* Before the start, after scalars, fluids, bodies and inlets: where it has another value. TOBI_INVALID for
+   none or two places, names that are none, sides that are no walls and walls that have it already. */
+TOBI_API tobi_status tobi_world_add_scalar_value(tobi_world *world, const tobi_scalar_value_def *def,
+                                                 tobi_error *err);
+/* 1 and, if info is not NULL, what the liquids have of it; 0 past the last. */
+TOBI_API int tobi_world_scalar(const tobi_world *world, int number, tobi_scalar_info *info);
+/* Name of a side or body with a value or flux and, if flow is not NULL, what comes through; NULL past the
+   end. */
+TOBI_API const char *tobi_world_scalar_flow(const tobi_world *world, int number, tobi_scalar_flow *flow);
 /* Before the start. Gravity as a function of time; TOBI_INVALID for numbers out of range and rows that go
    back in time, TOBI_NOT_FOUND and TOBI_IO for the file. Checkpoints do not hold it. */
 TOBI_API tobi_status tobi_world_set_gravity_in_time(tobi_world *world, const tobi_gravity_def *def,

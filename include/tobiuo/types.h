@@ -10,6 +10,7 @@
 #include "tobiuo/methods.h"
 #include "tobiuo/outline.h"
 #include "tobiuo/porous.h"
+#include "tobiuo/scalar.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -589,6 +590,7 @@ typedef struct tobi_energy {
     double line_power;            /* W, that damping of lines takes from them                         */
     double force_power;           /* W, that constant forces and control programs give them           */
     double porous_power;          /* W, that porous zones take from liquids                           */
+    double buoyancy_power;        /* W, that weight by temperature and concentration gives them       */
 } tobi_energy;
 
 #ifdef __cplusplus

@@ -138,6 +138,22 @@ class World:
                       lambda k: self._of("tobi_porous_info", lib.tobi_world_porous, k))
 
     @property
+    def scalars(self):
+        """Least, mean, largest value and amount of temperature and concentration (tobi_scalar_info)."""
+        found = []
+        while lib.tobi_world_scalar(self._world, len(found), ffi.NULL):
+            found.append(self._of("tobi_scalar_info", lib.tobi_world_scalar, len(found)))
+        return {info["field"]: info for info in found}
+
+    @property
+    def scalar_flows(self):
+        """What comes into the liquid through each side and body with a value or flux: WALL_temperature ..."""
+        names = _list_names(lib.tobi_world_scalar_flow, self._world, ffi.NULL)
+        flows = [self._of("tobi_scalar_flow", lib.tobi_world_scalar_flow, k) for k in range(len(names))]
+        fields = ("temperature", "concentration")
+        return {f"{name}_{fields[flow['field']]}": flow["flow"] for name, flow in zip(names, flows)}
+
+    @property
     def solids(self):
         """Mass, centre, velocity ... of each solid (tobi_solid_info)."""
         return _Named([self._solid(k)["name"] for k in range(lib.tobi_world_solid_count(self._world))], self._solid)

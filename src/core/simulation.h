@@ -8,6 +8,7 @@
 #include "core/opening.h"
 #include "core/plane.h"
 #include "core/porous.h"
+#include "core/scalar.h"
 #include "core/soft.h"
 #include "tobiuo/tobiuo.h"
 
@@ -34,6 +35,10 @@ typedef struct tobi_simulation {
     int damping_count;
     tobi_porous porous[TOBI_POROUS_LIMIT];
     int porous_count;
+    tobi_scalar scalar[TOBI_SCALAR_LIMIT];       /* by tobi_scalar_field */
+    tobi_scalar_place scalar_place[TOBI_SCALAR_VALUE_LIMIT];
+    int scalar_place_count;
+    double scalar_power;            /* W, that their weight gives liquids in the last step           */
     tobi_acceleration acceleration; /* besides gravity, at the middle of the step             */
     double acceleration_change;     /* m/s2, largest of the run in the liquid of the start, without gravity */
     double acceleration_most[3];    /* m/s2, of the whole run with gravity; 0: gravity alone  */

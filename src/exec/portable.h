@@ -43,6 +43,7 @@ TOBI_FN int64_t tobi_fetch_add(int64_t *count, int64_t more)
 typedef struct tobi_float4 { float x, y, z, w; } tobi_float4;
 /* Fixed-point position over the domain (see docs/decisions/0002) and one float for the pass. */
 typedef struct tobi_record { int32_t x, y, z; float w; } tobi_record;
+typedef struct tobi_double2 { double x, y; } tobi_double2;
 typedef struct tobi_double3 { double x, y, z; } tobi_double3;
 /* Three columns of a 3x3 matrix; the w of each column is free for a number that goes with it. */
 typedef struct tobi_columns { tobi_float4 c[3]; } tobi_columns;

@@ -1,5 +1,5 @@
-/* The columns of history.csv, bodies.csv, solids.csv, probes.csv, lines.csv, joints.csv and porous_zones.csv:
-   name, unit, value, meaning. One line makes the header, the row, `tobiuo describe history` and
+/* The columns of history.csv, bodies.csv, solids.csv, probes.csv, lines.csv, joints.csv, porous_zones.csv and
+   scalars.csv: name, unit, value, meaning. One line makes the header, the row, `tobiuo describe history` and
    docs/tables.md, so that they cannot disagree. Drawback: values are expressions, which mean something only
    in the writers. */
 #pragma once
@@ -102,6 +102,12 @@
 #define HISTORY_POROUS(H) \
     H("porous_work", "J", real, tobi_works_porous(run), \
       "Taken from liquids by porous zones since the start, where there are any.")
+
+/* The same with temperature or concentration that changes the weight, behind it. */
+#define HISTORY_BUOYANCY(H) \
+    H("buoyancy_work", "J", real, run->works.buoyancy, \
+      "Given to liquids since the start by what temperature and concentration change of their weight, " \
+      "where they do.")
 
 /* B(name, unit, value, meaning): bodies.csv after time and name, all real; V3 for a vector. An empty meaning:
    that of the column before. Means are over the time since the last output. */
@@ -216,3 +222,17 @@
     V("power", "W", i.power, "Taken from the liquid, in the last step.") \
     V("work", "J", run->works.porous[k], "Sum of power times time since the start.") \
     V("volume", "m3", i.volume, "Of the liquid in the zone, as if its contents took no room.")
+
+/* V(name, unit, value, meaning): scalars.csv after time, for temperature and for concentration; `i` is its
+   info. Amounts are in kg where nothing has a heat capacity. */
+#define SCALAR(V) \
+    V("min", "degC", i.least, "Least value of the particles.") \
+    V("mean", "degC", i.mean, "Their mean, by mass.") \
+    V("max", "degC", i.most, "Largest value of the particles.") \
+    V("amount", "J", i.amount, "What the liquids have beyond the value at the start; kg of a concentration.")
+
+/* The same for each side and body with a value or a flux; `f` is its flow. */
+#define SCALAR_FLOW(V) \
+    V("flow", "W", f.flow, \
+      "What comes through the side or body into the liquid, in the last step; kg/s of a concentration.") \
+    V("passed", "J", run->works.scalar[k], "Sum of flow times time since the start.")

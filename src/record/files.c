@@ -23,7 +23,7 @@
 static const struct { const char *folder, *pattern; } ours[] = {
     { "", "resolved.json" }, { "", "inputs.json" }, { "", "summary.json" }, { "", "history.csv" },
     { "", "bodies.csv" }, { "", "solids.csv" }, { "", "probes.csv" }, { "", "lines.csv" },
-    { "", "joints.csv" }, { "", "porous_zones.csv" },
+    { "", "joints.csv" }, { "", "porous_zones.csv" }, { "", "scalars.csv" },
     { "", "*.pvd" },
     { "fluid", "fluid_" SIX "*.vtu" }, { "bodies", "bodies_" SIX "*.vtu" },
     { "grid", "grid_" SIX "*.vtu" }, { "surface", "surface_" SIX "*.vtp" },

@@ -34,8 +34,10 @@ typedef struct tobi_body_tally { double time, impulse[TOBI_BODY_FORCES][3]; } to
 typedef struct tobi_solid_tally { double time, impulse[3]; } tobi_solid_tally;    /* of liquids */
 
 /* Work since the start, J: of each body as tobi_body.power, taken by each joint, by all lines, by each porous
-   zone; in 2-D how far each body has turned, rad. */
-typedef struct tobi_works { double (*body)[TOBI_POWERS], *joint, lines, *angle, *porous; } tobi_works;
+   zone, and what came through each wall of scalars; in 2-D how far each body has turned, rad. */
+typedef struct tobi_works {
+    double (*body)[TOBI_POWERS], *joint, lines, *angle, *porous, *scalar, buoyancy;
+} tobi_works;
 
 /* One field to write. */
 typedef struct tobi_record_field {
@@ -132,7 +134,7 @@ struct tobi_run {
     int series;
     int64_t listed, missing;              /* outputs in the lists; files that should be there */
 
-    tobi_csv *history, *bodies, *solids, *probes, *lines, *joints, *porous;   /* NULL: there are none */
+    tobi_csv *history, *bodies, *solids, *probes, *lines, *joints, *porous, *scalars;   /* NULL: none */
     int64_t outputs;                      /* taken so far = number of the next       */
     pthread_mutex_t aside_lock;           /* of the next three, which the writer only reads */
     tobi_aside *aside;                    /* those at no multiple of the interval, in order */
@@ -202,10 +204,13 @@ tobi_status tobi_joints_write(tobi_run *run, double before, tobi_error *err);
 /* record/porous.c: porous_zones.csv, likewise. */
 tobi_status tobi_porous_open(tobi_run *run, bool continued, tobi_error *err);
 tobi_status tobi_porous_write(tobi_run *run, double before, tobi_error *err);
+/* record/scalars.c: scalars.csv, likewise. */
+tobi_status tobi_scalars_open(tobi_run *run, bool continued, tobi_error *err);
+tobi_status tobi_scalars_write(tobi_run *run, double before, tobi_error *err);
 /* A table of the run: new, or continued after the rows up to `time`. */
 tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued, double time,
                             const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err);
-enum { TOBI_TABLES = 7 };
+enum { TOBI_TABLES = 8 };
 /* All tables, NULL where there is none. */
 void tobi_tables_list(const tobi_run *run, tobi_csv *tables[TOBI_TABLES]);
 /* Tries to write rows that wait; how many do. */

@@ -98,7 +98,7 @@ static void tell_losses(tobi_run *run)
         { run->history, "history.csv" }, { run->bodies, "bodies.csv" },
         { run->solids, "solids.csv" }, { run->probes, "probes.csv" },
         { run->lines, "lines.csv" }, { run->joints, "joints.csv" },
-        { run->porous, "porous_zones.csv" } };
+        { run->porous, "porous_zones.csv" }, { run->scalars, "scalars.csv" } };
     char *at = run->losses, *end = at + sizeof run->losses;
     *at = '\0';
     if (run->lost_dir) at += snprintf(at, (size_t)(end - at), "the directory was deleted and made again; ");
@@ -246,6 +246,7 @@ static tobi_status step_towards(tobi_run *run, double target, double end, tobi_e
     TOBI_TRY(tobi_lines_write(run, start, err));
     TOBI_TRY(tobi_joints_write(run, start, err));
     TOBI_TRY(tobi_porous_write(run, start, err));
+    TOBI_TRY(tobi_scalars_write(run, start, err));
     return tobi_tables_write_probes(run, start, err);
 }
 
@@ -351,6 +352,7 @@ void tobi_run_free(tobi_run *run)
     tobi_csv_close(run->lines);
     tobi_csv_close(run->joints);
     tobi_csv_close(run->porous);
+    tobi_csv_close(run->scalars);
     if (run->lock >= 0) close(run->lock);
     tobi_series_free(run);
     tobi_snapshot_free_skins(run);

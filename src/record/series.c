@@ -69,6 +69,9 @@ static tobi_status add_usual(tobi_run *run, tobi_error *err)
     for (int k = 0; k < count; k++) TOBI_TRY(add_field(run, usual[k], strlen(usual[k]), err));
     if (count == 5 && tobi_record_has_kinds(run->world))
         TOBI_TRY(add_field(run, "material", strlen("material"), err));
+    tobi_scalar_info scalar;
+    for (int k = 0; tobi_world_scalar(run->world, k, &scalar); k++)
+        TOBI_TRY(add_field(run, scalar.field, strlen(scalar.field), err));
     const char *texture = "texture_coordinates", *rest = "rest_position";
     if (run->world->solid_images > 0) TOBI_TRY(add_field(run, rest, strlen(rest), err));
     return tobi_world_has_textures(run->world) ? add_field(run, texture, strlen(texture), err) : TOBI_OK;

@@ -81,7 +81,8 @@ tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continue
 }
 
 #define H(name, unit, kind, value, doc) { name, NULL },
-static const tobi_csv_column history_columns[] = { HISTORY(H) HISTORY_POROUS(H) };
+static const tobi_csv_column history_columns[] = { HISTORY(H) HISTORY_POROUS(H) HISTORY_BUOYANCY(H) };
+enum { HISTORY_COLUMNS = sizeof history_columns/sizeof *history_columns };
 #undef H
 #define B(name, unit, value, doc) { name, NULL },
 static const tobi_csv_column body_columns[] = { { "time", NULL }, { "name", NULL }, BODY(B) BODY_2D(B) };
@@ -94,7 +95,7 @@ static const tobi_csv_column solid_columns[] = { { "time", NULL }, { "name", NUL
 #undef S
 
 #define H(name, unit, kind, value, doc) { name, unit, doc },
-static const tobi_column history[] = { HISTORY(H) HISTORY_POROUS(H) };
+static const tobi_column history[] = { HISTORY(H) HISTORY_POROUS(H) HISTORY_BUOYANCY(H) };
 #undef H
 #define B(name, unit, value, doc) { name, unit, doc },
 static const tobi_column body[] = {
@@ -110,7 +111,8 @@ static const tobi_column point[] = { POINT(P) }, level[] = { LEVEL(P) }, patch[]
     run_up[] = { RUN_UP(P) }, flow[] = { FLOW(P) }, volume[] = { VOLUME(P) };
 #undef P
 #define V(name, unit, value, doc) { name, unit, doc },
-static const tobi_column line[] = { LINE(V) }, joint[] = { JOINT(V, V) }, porous[] = { POROUS(V) };
+static const tobi_column line[] = { LINE(V) }, joint[] = { JOINT(V, V) }, porous[] = { POROUS(V) },
+    scalar[] = { SCALAR(V) }, scalar_flow[] = { SCALAR_FLOW(V) };
 #undef V
 
 static const struct { const tobi_column *columns; int count; } tables[] = {
@@ -119,7 +121,8 @@ static const struct { const tobi_column *columns; int count; } tables[] = {
     [TOBI_TABLE_POINT] = LIST(point), [TOBI_TABLE_LEVEL] = LIST(level), [TOBI_TABLE_PATCH] = LIST(patch),
     [TOBI_TABLE_RUN_UP] = LIST(run_up), [TOBI_TABLE_FLOW] = LIST(flow), [TOBI_TABLE_VOLUME] = LIST(volume),
     [TOBI_TABLE_SOLIDS] = LIST(solid), [TOBI_TABLE_LINES] = LIST(line), [TOBI_TABLE_JOINTS] = LIST(joint),
-    [TOBI_TABLE_POROUS] = LIST(porous),
+    [TOBI_TABLE_POROUS] = LIST(porous), [TOBI_TABLE_SCALARS] = LIST(scalar),
+    [TOBI_TABLE_SCALAR_FLOWS] = LIST(scalar_flow),
 #undef LIST
 };
 
@@ -133,7 +136,8 @@ const char *tobi_run_unit(const char *unit, int dimension)
 {
     static const char *const per_depth[][2] = {
         { "N", "N per m" }, { "N m", "N m per m" }, { "J", "J per m" }, { "W", "W per m" },
-        { "kg", "kg per m" }, { "kg m/s", "kg m/s per m" }, { "m3", "m2" }, { "m3/s", "m2/s" } };
+        { "kg", "kg per m" }, { "kg/s", "kg/s per m" }, { "kg m/s", "kg m/s per m" }, { "m3", "m2" },
+        { "m3/s", "m2/s" } };
     for (size_t k = 0; dimension == 2 && k < sizeof per_depth/sizeof *per_depth; k++)
         if (strcmp(unit, per_depth[k][0]) == 0) return per_depth[k][1];
     return unit;
@@ -157,13 +161,31 @@ void tobi_tables_count_missing(tobi_run *run)
     run->history_missing = tobi_csv_has_lost(run->history) ? 0 : count_missing(run);
 }
 
+static bool has_zones(const tobi_run *run) { return run->world->sim.porous_count > 0; }
+
+static bool has_buoyancy(const tobi_run *run)
+{
+    bool has = false;
+    for (int k = 0; k < TOBI_SCALAR_LIMIT; k++) has |= run->world->sim.scalar[k].expansion != 0;
+    return has;
+}
+
+/* The last two columns are of worlds that have what they tell. */
+static tobi_status open_history(tobi_run *run, bool continued, double last, tobi_error *err)
+{
+    tobi_csv_column columns[HISTORY_COLUMNS];
+    int count = HISTORY_COLUMNS - 2;
+    memcpy(columns, history_columns, sizeof columns);
+    if (has_zones(run)) columns[count++] = history_columns[HISTORY_COLUMNS - 2];
+    if (has_buoyancy(run)) columns[count++] = history_columns[HISTORY_COLUMNS - 1];
+    return tobi_table_open(run, "history.csv", continued, last, columns, count, &run->history, err);
+}
+
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
 {
     const double last = continued ? tobi_record_time(run, run->outputs - 1) : 0;
     const int flat = run->world->sim.def.dimension == 2;
-    TOBI_TRY(tobi_table_open(run, "history.csv", continued, last, history_columns,
-                        tables[TOBI_TABLE_HISTORY].count - (run->world->sim.porous_count > 0 ? 0 : 1),
-                        &run->history, err));
+    TOBI_TRY(open_history(run, continued, last, err));
     if (tobi_world_body_count(run->world) > 0)
         TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, last, body_columns,
                             tables[TOBI_TABLE_BODIES].count - (flat ? 0 : FLAT), &run->bodies, err));
@@ -173,6 +195,7 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
     TOBI_TRY(tobi_lines_open(run, continued, err));
     TOBI_TRY(tobi_joints_open(run, continued, err));
     TOBI_TRY(tobi_porous_open(run, continued, err));
+    TOBI_TRY(tobi_scalars_open(run, continued, err));
     return tobi_probes_open(run, continued, err);
 }
 
@@ -226,7 +249,8 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
     TOBI_TRY(take_solids(run, &snapshot->solids, err));
 #define H(name, unit, kind, value, doc) tobi_csv_add_##kind(run->history, value);
     HISTORY(H)
-    if (run->world->sim.porous_count > 0) { HISTORY_POROUS(H) }
+    if (has_zones(run)) { HISTORY_POROUS(H) }
+    if (has_buoyancy(run)) { HISTORY_BUOYANCY(H) }
 #undef H
     return tobi_csv_take_row(run->history, &snapshot->history, err);
 }
@@ -247,7 +271,7 @@ tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error
 void tobi_tables_list(const tobi_run *run, tobi_csv *tables[TOBI_TABLES])
 {
     tobi_csv *const all[TOBI_TABLES] = { run->history, run->bodies, run->solids, run->probes,
-                                          run->lines, run->joints, run->porous };
+                                          run->lines, run->joints, run->porous, run->scalars };
     for (int k = 0; k < TOBI_TABLES; k++) tables[k] = all[k];
 }
 

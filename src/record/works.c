@@ -23,9 +23,10 @@ bool tobi_works_open(tobi_run *run)
     run->works.body = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->works.body);
     run->works.joint = calloc((size_t)tobi_world_joint_count(run->world) + 1, sizeof *run->works.joint);
     run->works.porous = calloc(TOBI_POROUS_LIMIT, sizeof *run->works.porous);
+    run->works.scalar = calloc(TOBI_SCALAR_VALUE_LIMIT, sizeof *run->works.scalar);
     run->works.angle = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->works.angle);
     if (run->works.angle) follow_turns(run);
-    return run->works.body && run->works.joint && run->works.angle && run->works.porous;
+    return run->works.body && run->works.joint && run->works.angle && run->works.porous && run->works.scalar;
 }
 
 void tobi_works_free(tobi_run *run)
@@ -34,18 +35,22 @@ void tobi_works_free(tobi_run *run)
     free(run->works.joint);
     free(run->works.angle);
     free(run->works.porous);
+    free(run->works.scalar);
 }
 
 void tobi_works_add(tobi_run *run, double dt)
 {
     tobi_works *w = &run->works;
     tobi_joint_info joint;
+    tobi_scalar_flow flow;
     for (int k = 0; k < tobi_world_body_count(run->world); k++)
         for (int by = 0; by < TOBI_POWERS; by++) w->body[k][by] += dt*run->world->sim.bodies[k].power[by];
     for (int k = 0; tobi_world_joint(run->world, k, &joint); k++) w->joint[k] += dt*joint.power;
     w->lines += dt*tobi_energy_line_power(run->world);
     for (int k = 0; k < run->world->sim.porous_count; k++)
         w->porous[k] += dt*run->world->sim.porous[k].power;
+    for (int k = 0; tobi_world_scalar_flow(run->world, k, &flow); k++) w->scalar[k] += dt*flow.flow;
+    w->buoyancy += dt*run->world->sim.scalar_power;
     follow_turns(run);
 }
 
@@ -72,7 +77,8 @@ double tobi_works_porous(const tobi_run *run)
 
 json_t *tobi_works_to_json(const tobi_run *run)
 {
-    json_t *bodies = json_array(), *joints = json_array(), *angles = json_array(), *porous = json_array();
+    json_t *bodies = json_array(), *joints = json_array(), *angles = json_array(), *porous = json_array(),
+           *scalars = json_array();
     for (int k = 0; k < tobi_world_body_count(run->world); k++) {
         json_t *row = json_array();
         for (int by = 0; by < TOBI_POWERS; by++)
@@ -85,8 +91,11 @@ json_t *tobi_works_to_json(const tobi_run *run)
         json_array_append_new(joints, json_real(run->works.joint[k]));
     for (int k = 0; k < run->world->sim.porous_count; k++)
         json_array_append_new(porous, json_real(run->works.porous[k]));
-    return json_pack("{s:o, s:o, s:o, s:o, s:f}", "bodies", bodies, "joints", joints, "angles", angles,
-                     "porous_zones", porous, "lines", run->works.lines);
+    for (int k = 0; tobi_world_scalar_flow(run->world, k, NULL); k++)
+        json_array_append_new(scalars, json_real(run->works.scalar[k]));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:f, s:f}", "bodies", bodies, "joints", joints,
+                     "angles", angles, "porous_zones", porous, "scalars", scalars, "lines", run->works.lines,
+                     "buoyancy", run->works.buoyancy);
 }
 
 bool tobi_works_from_json(const json_t *json, tobi_run *run)
@@ -102,6 +111,9 @@ bool tobi_works_from_json(const json_t *json, tobi_run *run)
     run->works.lines = json_number_value(lines);
     for (size_t k = 0; k < (size_t)run->world->sim.porous_count; k++)      /* absent: 0 */
         run->works.porous[k] = json_number_value(json_array_get(json_object_get(json, "porous_zones"), k));
+    run->works.buoyancy = json_number_value(json_object_get(json, "buoyancy"));
+    for (int k = 0; tobi_world_scalar_flow(run->world, k, NULL); k++)
+        run->works.scalar[k] = json_number_value(json_array_get(json_object_get(json, "scalars"), (size_t)k));
     for (size_t k = 0; k < bodies; k++)
         for (size_t by = 0; by < TOBI_POWERS; by++)
             run->works.body[k][by] = json_number_value(json_array_get(json_array_get(of_bodies, k), by));

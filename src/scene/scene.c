@@ -552,6 +552,8 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
     ADD("probes", probe_count, tobi_world_add_probe(world, &scene->probes[i], err));
     ADD("damping_zones", tank.damping_count, tobi_world_add_damping(world, &scene->tank.damping[i], err));
     ADD("porous_zones", tank.porous_count, tobi_world_add_porous(world, &scene->tank.porous[i], err));
+    ADD("scalars", tank.scalar_count, tobi_world_add_scalar(world, &scene->tank.scalars[i], err));
+    ADD("scalar_values", tank.value_count, tobi_world_add_scalar_value(world, &scene->tank.values[i], err));
     if (status == TOBI_OK) status = tobi_tank_build(&scene->tank, world, err);
     if (status == TOBI_OK) *out = world;
     else tobi_world_destroy(world);

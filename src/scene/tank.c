@@ -1,5 +1,5 @@
 /* What a scene says about its tank as a whole: gravity in time, a central force, the frame that it is seen
-   from, damping zones, porous zones. */
+   from, damping zones, porous zones, temperature and concentration. */
 #include "scene/tank.h"
 #include "scene/write.h"
 #include "base/param.h"
@@ -24,52 +24,61 @@ static void bind_frame(tobi_scene_tank *t, const tobi_binder *binder, json_t *va
     tobi_source_mistake(binder->source, &place, "changes its shape; the motion of a frame is rigid");
 }
 
-static void bind_zones(tobi_scene_tank *t, const tobi_binder *binder, json_t *list, const tobi_place *root)
+/* A list of the scene into definitions of one size; their number. */
+typedef struct listing { const char *key, *noun; const tobi_param_table *table; int limit; } listing;
+
+static int bind_list(const listing *l, void *defs, const tobi_binder *binder, json_t *scene,
+                     const tobi_place *root)
 {
-    const tobi_place place = { root, "damping_zones", 0 };
-    if (!json_is_array(list) || json_array_size(list) > TOBI_ZONES) {
-        tobi_source_mistake(binder->source, &place, "must be a list [ { ... } ] of %d zones at most",
-                            TOBI_ZONES);
-        return;
+    const tobi_place place = { root, l->key, 0 };
+    json_t *list = json_object_get(scene, l->key);
+    if (!list) return 0;
+    if (!json_is_array(list) || json_array_size(list) > (size_t)l->limit) {
+        tobi_source_mistake(binder->source, &place, "must be a list [ { ... } ] of %d %s at most", l->limit,
+                            l->noun);
+        return 0;
     }
     for (size_t i = 0; i < json_array_size(list); i++) {
         const tobi_place entry = { &place, NULL, i };
-        t->damping[i] = tobi_default_damping_def();
-        tobi_bind(binder, &tobi_damping_table, json_array_get(list, i), &entry, NULL, &t->damping[i]);
-        t->damping_count++;
+        void *def = (char *)defs + i*l->table->size;
+        tobi_param_defaults(l->table, def);
+        tobi_bind(binder, l->table, json_array_get(list, i), &entry, NULL, def);
     }
+    return (int)json_array_size(list);
 }
 
-static void bind_porous(tobi_scene_tank *t, const tobi_binder *binder, json_t *list, const tobi_place *root)
+static int write_list(const listing *l, const void *defs, int count, json_t *root)
 {
-    const tobi_place place = { root, "porous_zones", 0 };
-    if (!json_is_array(list) || json_array_size(list) > TOBI_POROUS_LIMIT) {
-        tobi_source_mistake(binder->source, &place, "must be a list [ { ... } ] of %d zones at most",
-                            TOBI_POROUS_LIMIT);
-        return;
-    }
-    for (size_t i = 0; i < json_array_size(list); i++) {
-        const tobi_place entry = { &place, NULL, i };
-        t->porous[i] = tobi_default_porous_def();
-        tobi_bind(binder, &tobi_porous_table, json_array_get(list, i), &entry, NULL, &t->porous[i]);
-        t->porous_count++;
-    }
+    json_t *list = json_array();
+    int failed = !list;
+    for (int k = 0; k < count; k++)
+        failed |= json_array_append_new(list, tobi_write_def(l->table, (const char *)defs +
+                                                                           (size_t)k*l->table->size));
+    if (count) failed |= json_object_set(root, l->key, list);
+    json_decref(list);
+    return failed;
 }
+
+static const listing damping = { "damping_zones", "zones", &tobi_damping_table, TOBI_ZONES },
+                     porous = { "porous_zones", "zones", &tobi_porous_table, TOBI_POROUS_LIMIT },
+                     scalars = { "scalars", "scalars", &tobi_scalar_table, TOBI_SCALAR_LIMIT },
+                     values = { "scalar_values", "values", &tobi_scalar_value_table,
+                                TOBI_SCALAR_VALUE_LIMIT };
 
 void tobi_tank_bind(tobi_scene_tank *t, const tobi_binder *binder, json_t *scene, const tobi_place *root)
 {
     const tobi_place gravity = { root, "gravity_in_time", 0 }, centre = { root, "central_force", 0 };
     json_t *changes = json_object_get(scene, "gravity_in_time"), *frame = json_object_get(scene, "frame");
-    json_t *zones = json_object_get(scene, "damping_zones");
-    json_t *porous = json_object_get(scene, "porous_zones");
     json_t *central = json_object_get(scene, "central_force");
     t->gravity = tobi_default_gravity_def();
     t->central = tobi_default_central_def();
     if (changes) bind_gravity(t, binder, changes, &gravity);
     if (central) tobi_bind(binder, &tobi_central_table, central, &centre, NULL, &t->central);
     if (frame) bind_frame(t, binder, frame, root);
-    if (zones) bind_zones(t, binder, zones, root);
-    if (porous) bind_porous(t, binder, porous, root);
+    t->damping_count = bind_list(&damping, t->damping, binder, scene, root);
+    t->porous_count = bind_list(&porous, t->porous, binder, scene, root);
+    t->scalar_count = bind_list(&scalars, t->scalars, binder, scene, root);
+    t->value_count = bind_list(&values, t->values, binder, scene, root);
 }
 
 tobi_status tobi_tank_build(const tobi_scene_tank *t, tobi_world *world, tobi_error *err)
@@ -79,31 +88,26 @@ tobi_status tobi_tank_build(const tobi_scene_tank *t, tobi_world *world, tobi_er
     return t->frame ? tobi_world_set_frame(world, tobi_motion_positions, t->frame, err) : TOBI_OK;
 }
 
-static int write_zones(const tobi_scene_tank *t, json_t *root)
+/* A zone is written with what it has of box, outline and cylinder. */
+static void drop_shapes(const tobi_scene_tank *t, json_t *zones)
 {
-    json_t *zones = json_array(), *porous = json_array();
-    int failed = !zones || !porous;
-    for (int k = 0; k < t->damping_count; k++)
-        failed |= json_array_append_new(zones, tobi_write_def(&tobi_damping_table, &t->damping[k]));
     for (int k = 0; k < t->porous_count; k++) {
-        json_t *zone = tobi_write_def(&tobi_porous_table, &t->porous[k]);
+        json_t *zone = json_array_get(zones, (size_t)k);
         const int outline = tobi_outline_given(&t->porous[k].outline);
         const int round = t->porous[k].cylinder_radius > 0;
         if (outline || round) json_object_del(zone, "box");
         if (!outline) json_object_del(zone, "outline");
         if (!round) json_object_del(zone, "cylinder");
-        failed |= json_array_append_new(porous, zone);
     }
-    if (t->damping_count) failed |= json_object_set(root, "damping_zones", zones);
-    if (t->porous_count) failed |= json_object_set(root, "porous_zones", porous);
-    json_decref(zones);
-    json_decref(porous);
-    return failed;
 }
 
 int tobi_tank_write(const tobi_scene_tank *t, json_t *root)
 {
-    int failed = write_zones(t, root);
+    int failed = write_list(&damping, t->damping, t->damping_count, root) |
+                 write_list(&porous, t->porous, t->porous_count, root) |
+                 write_list(&scalars, t->scalars, t->scalar_count, root) |
+                 write_list(&values, t->values, t->value_count, root);
+    drop_shapes(t, json_object_get(root, "porous_zones"));
     if (t->changes)
         failed |= json_object_set_new(root, "gravity_in_time",
                                       tobi_write_def(&tobi_gravity_table, &t->gravity));

@@ -2,6 +2,7 @@
    list, though wcsph needs less of it. */
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
+#include "sph/scalars.h"
 #include <string.h>
 
 #define ROW(...) TOBI_FIELD_ROW(sph_fields, __VA_ARGS__)
@@ -10,7 +11,8 @@ const tobi_field_list sph_field_list = { fields, sizeof fields/sizeof *fields, s
 
 const tobi_output sph_outputs[] = {
     { "acceleration", 3, "m/s2", 1 }, { "vorticity", 3, "1/s", 1 }, { "surface", 1, "1", 0 },
-    { "apparent_viscosity", 1, "Pa s", 1 }, { "material", 1, "1", 0 }, { NULL, 0, NULL, 0 } };
+    { "apparent_viscosity", 1, "Pa s", 1 }, { "material", 1, "1", 0 },
+    { "temperature", 1, "degC", 0 }, { "concentration", 1, "1", 0 }, { NULL, 0, NULL, 0 } };
 
 unsigned sph_needs(const tobi_system *s, int full)
 {
@@ -23,6 +25,7 @@ unsigned sph_needs(const tobi_system *s, int full)
     for (int f = 0; f < s->fluid_count && s->sim->def.implicit_viscosity; f++)
         if (!tobi_fluid_is_newtonian(&s->fluid[f])) needs |= SPH_NEED_APPARENT;
     if (s->sim->porous_count > 0) needs |= SPH_NEED_POROUS;
+    if (sph_scalars_any(s)) needs |= SPH_NEED_SCALARS;
     return needs;
 }
 
@@ -39,6 +42,10 @@ void sph_read(const tobi_system *s, const char *name, int64_t i, double *out)
         out[0] = (sph_of(s)->mirrors ? f->pressure[i] : f->mean[i]) + sph_hydrostatic(s, x);
     } else if (!strcmp(name, "apparent_viscosity")) {
         out[0] = f->apparent ? f->apparent[i].x : s->fluid[p->fluid[i]].viscosity;
+    } else if (!strcmp(name, "temperature")) {
+        out[0] = f->scalars ? f->scalars[i].x : 0;
+    } else if (!strcmp(name, "concentration")) {
+        out[0] = f->scalars ? f->scalars[i].y : 0;
     } else if (!strcmp(name, "density")) {
         out[0] = f->density[i]*s->fluid[p->fluid[i]].density;
     } else {

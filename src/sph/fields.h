@@ -4,10 +4,10 @@
 
 /* Scenes with surface tension; liquids with bodies in them; inlets and outlets; several liquids;
    implicit viscosity; the filter (13b) with a free surface; liquids whose viscosity depends on the flow;
-   porous zones. */
+   porous zones; temperature or concentration. */
 enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2, SPH_NEED_OPENINGS = 4, SPH_NEED_PHASES = 8,
        SPH_NEED_IMPLICIT = 16, SPH_NEED_FILTER = 32, SPH_NEED_APPARENT = 64,
-       SPH_NEED_POROUS = 128 };
+       SPH_NEED_POROUS = 128, SPH_NEED_SCALARS = 256 };
 
 /* Stages of a step: boundaries; density; forces; the pressure by an equation, or by that of state; the
    correction of positions; forces on walls and bodies, new positions. Between steps: a derived output. */
@@ -87,6 +87,12 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
       "drag of its zone in the step, sph/porous.k.h") \
     X(tobi_float4, TOBI_F32, 4, porous_before, TOBI_SCRATCH, SPH_NEED_POROUS, "m/s", \
       "velocity before the step; w: 1 + number of its zone, 0: none") \
+    X(tobi_double2, TOBI_F64, 2, scalars,     TOBI_STATE,   SPH_NEED_SCALARS, "1", \
+      "temperature, concentration") \
+    X(tobi_float4, TOBI_F32, 4, scalar_now,   TOBI_SCRATCH, SPH_NEED_SCALARS, "1", \
+      "the same, from their values at the start; z: eddy viscosity, m2/s; w: density, kg/m3") \
+    X(tobi_float4, TOBI_F32, 4, scalar_change, TOBI_SCRATCH, SPH_NEED_SCALARS, "1", \
+      "of both in the step by diffusion, and by the shift of positions") \
     X(int32_t,     TOBI_I32, 1, last_link,    TOBI_SCRATCH, 0, "1",    "last near-body entry, -1 = none")
 
 typedef struct sph_fields { SPH_FIELDS(TOBI_FIELD_POINTER) } sph_fields;

@@ -9,6 +9,7 @@
 #include "sph/isph/time.k.h"
 #include "sph/phases.k.h"
 #include "sph/pressure.k.h"
+#include "sph/scalars.k.h"
 #include "sph/sph.k.h"
 #include "sph/tait.k.h"
 #include "sph/tension.k.h"
@@ -35,6 +36,8 @@
 #define FOR(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, sph_view, run_##K)
 #define PHASES PAIR
 #define PHASE FOR
+#define SCALARS PAIR
+#define SCALAR FOR
 #define COUPLE(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, tobi_couple_view, run_##K)
 #define IMAGE(K, SUMS, MAXIMA, DOC)                                                                 \
     ISPH_LOOP(K, TOBI_SHAPE_WENDLAND, run_##K##_wendland)                                           \
@@ -48,6 +51,8 @@
 #undef COUPLE
 #undef PHASES
 #undef PHASE
+#undef SCALARS
+#undef SCALAR
 #undef IMAGE
 #undef RARE
 #undef ISPH
@@ -59,6 +64,8 @@ const sph_kernels JOIN(sph_kernels, TOBI_ISA)[SPH_TABLES] = {
 #define COUPLE FOR
 #define PHASES PAIR
 #define PHASE FOR
+#define SCALARS PAIR
+#define SCALAR FOR
 #define IMAGE PAIR
 #define RARE FOR
 #define ISPH FOR
@@ -78,6 +85,8 @@ const sph_kernels JOIN(sph_kernels, TOBI_ISA)[SPH_TABLES] = {
 #undef COUPLE
 #undef PHASES
 #undef PHASE
+#undef SCALARS
+#undef SCALAR
 #undef IMAGE
 #undef RARE
 #undef ISPH

@@ -9,6 +9,8 @@ typedef struct sph_kernels {
 #define COUPLE FOR
 #define PHASES PAIR
 #define PHASE FOR
+#define SCALARS PAIR
+#define SCALAR FOR
 #define IMAGE PAIR
 #define RARE FOR
 #define ISPH FOR
@@ -18,6 +20,8 @@ typedef struct sph_kernels {
 #undef COUPLE
 #undef PHASES
 #undef PHASE
+#undef SCALARS
+#undef SCALAR
 #undef IMAGE
 #undef RARE
 #undef ISPH

@@ -227,6 +227,7 @@ TOBI_FN void sph_gravity(const sph_view *v, int64_t i, float g[3])
                    v->inverse_density[v->fluid[i]];
     for (int c = 0; c < 3; c++) g[c] = v->gravity[c] - (float)(taken*v->reference.down[c]);
     if (v->phase) sph_add_buoyancy(v, i, g);
+    if (v->scalar.lift.acts) tobi_scalar_add_lift(&v->scalar.lift, v->scalars[i], g);
     if (!v->acceleration.acts) return;
     double more[3];
     tobi_acceleration_at(&v->acceleration, &v->position[i].x, more);

@@ -5,6 +5,7 @@
 #include "sph/boundary/boundary.h"
 #include "sph/openings.h"
 #include "sph/phases.h"
+#include "sph/scalars.h"
 #include "sph/viscosity.h"
 #include "geom/vec3.h"
 #include <math.h>
@@ -138,6 +139,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     v->band_depth = (float)band_depth(c);
     v->contact_cosine = (float)cos(s->sim->def.contact_angle*acos(-1)/180);
     v->acceleration = s->sim->acceleration;
+    sph_scalars_bind(s, v);
     for (int a = 0; a < 3; a++) {
         v->gravity[a] = a < c->dimension ? (float)s->gravity[a] : 0;
         v->removed_gravity[a] = a < c->dimension ? (float)(s->sim->def.gravity[a] - s->gravity[a]) : 0;
@@ -171,7 +173,8 @@ double sph_tension_dt(const tobi_system *s)
 
 double sph_force_dt(const tobi_system *s)
 {
-    return fmin(s->sim->def.implicit_viscosity ? INFINITY : sph_viscous_dt(s), sph_tension_dt(s));
+    const double viscous = s->sim->def.implicit_viscosity ? INFINITY : sph_viscous_dt(s);
+    return fmin(fmin(viscous, sph_scalars_dt(s)), sph_tension_dt(s));
 }
 
 void sph_use_dt(const tobi_system *s, sph_view *v)
@@ -385,6 +388,7 @@ double sph_move_particles(tobi_system *s, sph_view *v, const sph_kernels *k, dou
     double t[TOBI_TOTALS];
     v->speed_cap = (float)fmax(3*tobi_system_speed_scale(s), s->sim->def.speed_limit);
     sph_openings_drive(s);
+    sph_scalars_spread(s, v, k);
     launch(s, v, k->sph_advance, t);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] += t[1 + a]/s->dt;
     s->info.contacts = (int64_t)t[0];

@@ -20,7 +20,7 @@ double sph_gravity_dt(const tobi_system *s);
 double sph_viscous_dt(const tobi_system *s);
 /* 0.4 sqrt(rho d^3/(2 pi sigma)): the longest step of explicit surface tension, s; without it INFINITY. */
 double sph_tension_dt(const tobi_system *s);
-/* The least of those two; implicit viscosity sets no bound. */
+/* The least of those two and of the diffusion of scalars; implicit viscosity sets no bound. */
 double sph_force_dt(const tobi_system *s);
 /* The step at hand, s->dt, into v. */
 void sph_use_dt(const tobi_system *s, sph_view *v);

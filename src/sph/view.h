@@ -1,6 +1,7 @@
 /* Everything an SPH kernel may read or write, as plain pointers and constants. */
 #pragma once
 #include "core/acceleration.h"
+#include "core/scalar.h"
 #include "core/wall_table.h"
 #include "exec/portable.h"
 #include "linear/grid.h"
@@ -13,6 +14,17 @@ typedef struct tobi_plane { int axis; float sign; double at; int no_slip; float 
 
 /* Of sph_view.surface: neighbours are missing on all sides alike, as in spray. */
 enum { SPH_SPARSE = 2 };
+
+/* Of temperature and concentration, scalars.k.h. */
+typedef struct sph_scalar_constants {
+    tobi_scalar_lift lift;
+    float diffusivity[TOBI_SCALAR_LIMIT];                /* m2/s                                        */
+    float per_eddy[TOBI_SCALAR_LIMIT];                   /* 1: of the eddy viscosity                    */
+    tobi_scalar_wall plane[6][TOBI_SCALAR_LIMIT];        /* of view.plane                               */
+    float lattice;                                       /* 1: of sigma, so that walls give their flux  */
+    float gain[TOBI_SCALAR_LIMIT], loss[TOBI_SCALAR_LIMIT];      /* 1: of eq. (5)                      */
+    float dt, way;                                       /* s: of diffusion; over which accel shifts    */
+} sph_scalar_constants;
 
 /* Of implicit viscosity, viscosity.k.h; NULL without it. */
 typedef struct sph_viscous_fields {
@@ -50,6 +62,8 @@ typedef struct sph_view {
     const uint8_t *TOBI_RESTRICT fluid;
     const tobi_float4 *TOBI_RESTRICT held;    /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none */
     const tobi_float4 *TOBI_RESTRICT porous;  /* drag, porous.k.h; NULL: none acts in the pass at hand */
+    tobi_double2 *TOBI_RESTRICT scalars;                 /* NULL: there are none                         */
+    tobi_float4 *TOBI_RESTRICT scalar_now, *TOBI_RESTRICT scalar_change;
     const tobi_float4 *outlet_normal;         /* of each opening, by |w| - 1; w = 1: sph_carried */
     /* neighbour list */
     const void *TOBI_RESTRICT list;
@@ -90,6 +104,7 @@ typedef struct sph_view {
     tobi_plane plane[6];
     const tobi_wall_table *TOBI_RESTRICT table;
     /* the step and the solve at hand */
+    sph_scalar_constants scalar;
     float dt, inverse_dt;
     float gravity[3];
     tobi_acceleration acceleration;           /* besides gravity                             */

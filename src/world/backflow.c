@@ -2,6 +2,7 @@
    particles, a spacing further along the normal, wherever there is room for one. So a buffer that moves
    inwards grows at its end, and rest stays rest. Drawback: what is new repeats the disorder before it. */
 #include "world/openings.h"
+#include "world/scalars.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -97,6 +98,7 @@ static tobi_status repeat(tobi_system *s, int64_t of, const double x[3], tobi_er
     p->position[row] = (tobi_double3){ x[0], x[1], x[2] };
     p->velocity[row] = p->velocity[of];
     p->fluid[row] = p->fluid[of];
+    tobi_scalars_repeat(s, row, of);
     s->info.particles_in++;
     return TOBI_OK;
 }

@@ -128,6 +128,8 @@ static void take_over(tobi_world *w, loaded *l)
         tobi_porous *z = &s->porous[k];
         z->force[0] = z->force[1] = z->force[2] = z->power = z->volume = 0;
     }
+    for (int k = 0; k < s->scalar_place_count; k++) s->scalar_place[k].flow = 0;
+    s->scalar_power = 0;
     tobi_openings_set(w, l->way);
     for (int k = 0; k < w->system_count; k++) tobi_system_take(&w->system[k], &l->system[k]);
     w->system[0].step = l->step;

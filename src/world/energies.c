@@ -57,5 +57,6 @@ tobi_status tobi_world_energy(const tobi_world *w, tobi_energy *energy)
     for (int k = 0; tobi_world_joint(w, k, &joint); k++) energy->joint_power += joint.power;
     energy->line_power = tobi_energy_line_power(w);
     for (int k = 0; k < w->sim.porous_count; k++) energy->porous_power += w->sim.porous[k].power;
+    energy->buoyancy_power = w->sim.scalar_power;
     return TOBI_OK;
 }

@@ -3,6 +3,7 @@
    number, the same for any number of threads. Drawback: columns stand still across the flow; what leaves a
    buffer sideways is lost to them and free at once. */
 #include "world/openings.h"
+#include "world/scalars.h"
 #include "world/names.h"
 #include "base/error.h"
 #include "base/param.h"
@@ -426,6 +427,7 @@ tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err)
             for (int64_t l = 0; l < layers; l++) {
                 const int64_t i = tobi_particles_add(&s->particles);
                 put(s, o, &o->columns[c], start_of(o, &o->columns[c], l), w->sim.time, i);
+                tobi_scalars_place(s, i, k);
                 const tobi_double3 *p = &s->particles.position[i];
                 TOBI_TRY(check_others(w, o, (double[3]){ p->x, p->y, p->z }, err));
             }
@@ -536,8 +538,10 @@ static tobi_status follow(tobi_world *w, tobi_opening *o, tobi_error *err)
         const tobi_inlet_column *col = &o->columns[c];
         const int64_t last = count_in(o, col, next);
         const double gone = next*col->factor/o->step + col->phase;
-        for (int64_t n = count_in(o, col, o->way) + 1; n <= last; n++)
-            put(s, o, col, (gone - (double)n)*o->step - o->depth, w->sim.time, row++);
+        for (int64_t n = count_in(o, col, o->way) + 1; n <= last; n++, row++) {
+            put(s, o, col, (gone - (double)n)*o->step - o->depth, w->sim.time, row);
+            tobi_scalars_place(s, row, (int)(o - w->sim.openings));
+        }
     }
     o->way = next;
     s->info.particles_in += count;

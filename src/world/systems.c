@@ -6,6 +6,7 @@
 #include "base/param.h"
 #include "mpm/mlsmpm.h"
 #include "world/openings.h"
+#include "world/scalars.h"
 #include "world/vessel.h"
 #include "world/world.h"
 #include <math.h>
@@ -49,13 +50,14 @@ static int is_full_vessel(const tobi_world *w, const tobi_system *s)
     return filled > domain*(1 - 0.5*d->spacing/longest);
 }
 
-/* Whether a body or a side moves in a full vessel, or liquid is driven through a porous zone: behind it the
-   pressure is low, where particles would cluster. */
+/* Whether a body or a side moves in a full vessel, warm liquid rises in it, or liquid is driven through a
+   porous zone: behind it the pressure is low, where particles would cluster. */
 static int is_stirred_vessel(const tobi_world *w, const tobi_system *s)
 {
     int driven = w->sim.wall_speed > 0 || tobi_system_is_mixed(s) || w->sim.porous_count > 0 ||
                  tobi_body_any_free(w->sim.bodies, w->sim.body_count);
     for (int k = 0; k < w->sim.body_count; k++) driven |= w->sim.bodies[k].motion != NULL;
+    for (int k = 0; k < TOBI_SCALAR_LIMIT; k++) driven |= w->sim.scalar[k].expansion != 0;
     return driven && is_full_vessel(w, s);
 }
 
@@ -278,6 +280,7 @@ tobi_status tobi_world_fill_system(tobi_world *w, tobi_system *s, tobi_error *er
     for (int k = 0; k < w->region_count; k++)
         if (&w->system[w->regions[k].system] == s) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
     TOBI_TRY(tobi_regions_check_apart(s, (int)(s - w->system), w->regions, w->region_count, err));
+    tobi_scalars_start(s);
     return s == &w->system[0] ? tobi_openings_fill(w, err) : TOBI_OK;
 }
 

@@ -14,6 +14,7 @@
 #include "world/names.h"
 #include "world/note_pieces.h"
 #include "world/openings.h"
+#include "world/scalars.h"
 #include "world/overlap.h"
 #include "base/param.h"
 #include "world/step.h"
@@ -295,6 +296,7 @@ static tobi_status start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_note_friction(w, err));
     TOBI_TRY(tobi_openings_note(w, err));
     TOBI_TRY(tobi_world_note_porous(w, err));
+    TOBI_TRY(tobi_world_note_scalars(w, err));
     TOBI_TRY(tobi_openings_note_pools(w, err));
     TOBI_TRY(tobi_overlap_note_solids(w, err));
     TOBI_TRY(tobi_beside_check(w, err));

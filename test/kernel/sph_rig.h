@@ -235,7 +235,7 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     tobi_box_init(&g->box, k->dimension, lower, upper, k->periodic, g->c.h);
     int64_t count = (int64_t)n[0]*n[1]*n[2];
     const unsigned all = SPH_NEED_TENSION | SPH_NEED_WETTED | SPH_NEED_PHASES | SPH_NEED_IMPLICIT |
-                         SPH_NEED_APPARENT;
+                         SPH_NEED_APPARENT | SPH_NEED_SCALARS;
     list.count = sph_field_list.count;
     for (int f = 0; f < list.count; f++) {
         field[f] = sph_field_list.field[f];

@@ -429,6 +429,8 @@ static const entry kernels[] = {
 #define COUPLE PAIR
 #define PHASES PAIR
 #define PHASE PAIR
+#define SCALARS PAIR
+#define SCALAR PAIR
 #define IMAGE(K, SUMS, MAXIMA, DOC) {#K, offsetof(sph_kernels, K), oracle_##K},
 #define RARE IMAGE
 #define ISPH IMAGE

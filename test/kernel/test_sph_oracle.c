@@ -76,6 +76,8 @@ static const entry kernels[] = {
 #define RARE IMAGE
 #define PHASES IMAGE                      /* see test_phases_oracle.c */
 #define PHASE IMAGE
+#define SCALARS IMAGE                     /* see test_scalars_oracle.c */
+#define SCALAR IMAGE
 #define ISPH IMAGE
 #include "sph/kernels.def"
 #undef PAIR
@@ -85,6 +87,8 @@ static const entry kernels[] = {
 #undef RARE
 #undef PHASES
 #undef PHASE
+#undef SCALARS
+#undef SCALAR
 #undef ISPH
 };
 enum { KERNELS = sizeof kernels/sizeof *kernels };

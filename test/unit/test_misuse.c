@@ -377,7 +377,7 @@ static void no_object_and_no_text(void **state)
     tobi_motion_free(motion);
     tobi_run_go_on(NULL, 1);
     assert_true(tobi_run_pictures(NULL, &seconds) == 0 && seconds == 0);
-    assert_true(!tobi_run_column((tobi_table)-1, 0) && !tobi_run_column(TOBI_TABLE_POROUS + 1, 0));
+    assert_true(!tobi_run_column((tobi_table)-1, 0) && !tobi_run_column(TOBI_TABLE_SCALAR_FLOWS + 1, 0));
     assert_true(!tobi_scene_suggest(NULL) && !tobi_suggest(NULL, NULL, 1) && !tobi_suggest("a", NULL, 1));
     assert_int_equal(tobi_solid_uses(0, NULL), 1);
     tobi_solid_list(0, NULL, 10);

@@ -70,6 +70,8 @@ static void every_member_has_a_row(void **state)
     assert_int_equal(count_uncovered(&tobi_central_table), 0);
     assert_int_equal(count_uncovered(&tobi_damping_table), 0);
     assert_int_equal(count_uncovered(&tobi_porous_table), hole);
+    assert_int_equal(count_uncovered(&tobi_scalar_table), 4);              /* behind the field */
+    assert_int_equal(count_uncovered(&tobi_scalar_value_table), 0);
 }
 
 static void check_row(const tobi_param_table *table, const tobi_param *row)
@@ -103,7 +105,7 @@ static void rows_agree_with_themselves(void **state)
         for (; row->key; row++, rows++) check_row(table, row);
         assert_true(row - table->rows <= 128);        /* the binder keeps one bit per row */
     }
-    assert_int_equal(tables, 24);
+    assert_int_equal(tables, 26);
     assert_true(rows > 45);
     assert_null(tobi_param_table_at(-1));
 }

@@ -138,7 +138,7 @@ static void add_all(words *w)
     for (int i = 0; tobi_part_at(i, &part); i++) add_words(w, part.key);
     for (int i = 0; (name = tobi_world_field_name(i, &components, &unit)); i++) add_words(w, name);
     const tobi_column *c;
-    for (tobi_table t = TOBI_TABLE_HISTORY; t <= TOBI_TABLE_POROUS; t++)
+    for (tobi_table t = TOBI_TABLE_HISTORY; t <= TOBI_TABLE_SCALAR_FLOWS; t++)
         for (int i = 0; (c = tobi_run_column(t, i)); i++) add_words(w, c->name);
 }
 

@@ -33,6 +33,8 @@ static const char head[] =
     "`wave_groups.csv` | by [`tobiuo waves`](waves.md) |\n"
     "| response of a float or a mooring to waves (RAO) | `wave_responses.csv`, `wave_gains.csv` | by "
     "[`tobiuo waves --response`](waves.md#responses-of-floats-and-moorings) |\n"
+    "| temperature, concentration; heat through a wall | `scalars.csv` | `temperature_mean`, "
+    "`WALL_temperature_flow` |\n"
     "| force on a porous zone, what it takes | `porous_zones.csv`; all: `history.csv` | `NAME_force_x`, "
     "`NAME_work`; `porous_work` |\n"
     "| tension of a line, force in a joint | `lines.csv`, `joints.csv` | `NAME_tension`; "
@@ -74,10 +76,10 @@ static const char head[] =
     "  `clamped_to` it. Torques are about its centre of mass.\n"
     "- Columns `elastic_energy` to `side_work` are of the method `mlsmpm`. Without it they are 0.\n"
     "- `kinetic_energy` + `potential_energy` + `body_kinetic_energy` + `body_potential_energy` +\n"
-    "  `spring_energy` - `motion_work` + `joint_work` + `line_work` + `porous_work` - `force_work`\n"
-    "  falls by what a liquid loses else and by contact. Inlets add to it.\n"
-    "- `motion_work`, `joint_work`, `line_work`, `porous_work`, `force_work`, `work` and `contact_work`\n"
-    "  know every step. They count on over a resume.\n"
+    "  `spring_energy` - `motion_work` + `joint_work` + `line_work` + `porous_work` - `force_work` -\n"
+    "  `buoyancy_work` falls by what a liquid loses else and by contact. Inlets add to it.\n"
+    "- `motion_work`, `joint_work`, `line_work`, `porous_work`, `force_work`, `buoyancy_work`, `work` and\n"
+    "  `contact_work` know every step. They count on over a resume.\n"
     "\n"
     "## Files of a run\n"
     "\n"
@@ -90,6 +92,8 @@ static const char head[] =
     "| `lines.csv`, `joints.csv` | lines; joints, hinges and guides; as many rows as `probes.csv` | with "
     "lines; with joints, hinges or guides |\n"
     "| `porous_zones.csv` | [porous zones](porous.md); as many rows as `probes.csv` | with porous zones |\n"
+    "| `scalars.csv` | [temperature and concentration](scalars.md); as many rows as `probes.csv` | with "
+    "`scalars` |\n"
     "| `fluid.pvd` | particles of the fluids and solids over time; `.vtu` in `fluid/` | with "
     "fluids or solids |\n"
     "| `bodies.pvd` | particles of the bodies over time; `.vtu` in `bodies/` | with bodies |\n"
@@ -149,6 +153,12 @@ static const char *const zones =
     "The first column is `time [s]`. The others begin with the name of the [zone](porous.md).\n\n"
     "| column | unit | meaning |\n|---|---|---|\n";
 
+static const char *const scalars =
+    "\n## scalars.csv\n\n"
+    "The first column is `time [s]`. FIELD is `temperature` or `concentration`, WALL the name of a side\n"
+    "or body with a [value or flux](scalars.md).\n\n"
+    "| column | unit | meaning |\n|---|---|---|\n";
+
 static const struct { const char *topic, *file, *doc; tobi_table table; } tables[] = {
     { "history", "history.csv", "The columns of history.csv: a row per output.", TOBI_TABLE_HISTORY },
     { "bodies", "bodies.csv", "The columns of bodies.csv: a row per output and body.", TOBI_TABLE_BODIES },
@@ -170,6 +180,11 @@ static const struct { const char *topic, *file, *doc; tobi_table table; } tables
       TOBI_TABLE_JOINTS },
     { "zones", "porous_zones.csv", "The columns of porous_zones.csv for each zone: NAME_force_x, ...",
       TOBI_TABLE_POROUS },
+    { "scalars", "scalars.csv", "The columns of scalars.csv: temperature_min, ..., concentration_min, ...",
+      TOBI_TABLE_SCALARS },
+    { "scalars", "scalars.csv",
+      "The columns of scalars.csv for each side and body with a value or flux: NAME_temperature_flow, ...",
+      TOBI_TABLE_SCALAR_FLOWS },
 };
 enum { TABLES = sizeof tables/sizeof *tables };
 
@@ -216,11 +231,11 @@ int tobi_tables_find(FILE *out, const char *name)
 const char *tobi_tables_topic(int index, const char **doc)
 {
     static const char *const names[] = { "history", "bodies", "solids", "probes", "lines", "joints", "zones",
-                                         "tables" };
+                                         "scalars", "tables" };
     static const char *const docs[] = { "The columns of history.csv, with units.", "Those of bodies.csv.",
                                         "Those of solids.csv.", "Those of probes.csv.",
                                         "Those of lines.csv.", "Those of joints.csv.",
-                                        "Those of porous_zones.csv.",
+                                        "Those of porous_zones.csv.", "Those of scalars.csv.",
                                         "The page of all columns, in Markdown (docs/tables.md)." };
     if (index < 0 || index >= (int)(sizeof names/sizeof *names)) return NULL;
     *doc = docs[index];
@@ -268,6 +283,9 @@ char *tobi_tables_manual(void)
     write_rows(out, TOBI_TABLE_JOINTS, NULL, "JOINT_");
     fputs(zones, out);
     write_rows(out, TOBI_TABLE_POROUS, NULL, "ZONE_");
+    fputs(scalars, out);
+    write_rows(out, TOBI_TABLE_SCALARS, NULL, "FIELD_");
+    write_rows(out, TOBI_TABLE_SCALAR_FLOWS, NULL, "WALL_FIELD_");
     int failed = ferror(out);
     if (fclose(out) == 0 && !failed) return text;
     free(text);

@@ -7,6 +7,7 @@
 #include "sph/boundary/boundary.h"
 #include "sph/boundary/look.h"
 #include "sph/hydrostatic.h"
+#include "sph/scalars.h"
 #include "sph/state.h"
 #include <math.h>
 #include <string.h>
@@ -99,6 +100,7 @@ void tobi_boundary_look(const tobi_system *s, int32_t i, int body, int alone, to
     if (!find_foot(&l)) return;
     link->distance = (float)fabs(entry->distance);
     sph_gravity_at(s, l.x, s->particles.fluid[i], l.view.gravity);
+    sph_scalars_add_lift(s, i, l.view.gravity);
     tobi_boundary_take_facing(n, body, l.x, s->smoothing.h, add_points, &l);
     entry->share = fmin(entry->share, 0.98);
 }

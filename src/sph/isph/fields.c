@@ -12,6 +12,7 @@
 const tobi_output isph_outputs[] = {
     { "acceleration", 3, "m/s2", 1 }, { "vorticity", 3, "1/s", 1 }, { "surface", 1, "1", 0 },
     { "apparent_viscosity", 1, "Pa s", 1 }, { "material", 1, "1", 0 },
+    { "temperature", 1, "degC", 0 }, { "concentration", 1, "1", 0 },
     { "viscous_acceleration", 3, "m/s2", 1 }, { "pressure_acceleration", 3, "m/s2", 1 },
     { "divergence", 1, "1/s", 1 }, { "predicted_divergence", 1, "1/s", 1 },
     { "pressure_source", 1, "Pa/m2", 1 },
@@ -44,6 +45,7 @@ static void add_viscosity(tobi_system *s, isph_solver *m, const sph_view *shared
     v.filter = 0;
     for (int a = 0; a < 3; a++) v.gravity[a] = 0;
     v.acceleration.acts = 0;
+    v.scalar.lift.acts = 0;
     s->dt = m->view.dt = dt;
     if (corrected) launch(s, m, m->kernel->isph_viscosity);
     sph_viscosity_begin(s, &v, m->kernel);

@@ -301,6 +301,7 @@ void isph_forces(tobi_system *s)
     if (corrected) launch(s, m, m->kernel->isph_viscosity, NULL);
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     without.acceleration.acts = 0;
+    without.scalar.lift.acts = 0;
     without.filter = (float)choose_filter(s, m);
     sph_apply_forces(s, &without, m->kernel, &clock);
     if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
@@ -369,6 +370,7 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
     without.pressure = NULL;
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     without.acceleration.acts = 0;
+    without.scalar.lift.acts = 0;
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
     memcpy(s->info.wall_force, friction, sizeof s->info.wall_force);
     sph_viscosity_load(s);

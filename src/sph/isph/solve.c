@@ -6,6 +6,7 @@
 #include "sph/isph/forces.h"
 #include "sph/isph/pockets.h"
 #include "sph/porous.k.h"
+#include "sph/scalars.h"
 #include "sph/isph/surface.h"
 #include "sph/isph/sweeps.h"
 #include "sph/soft.h"
@@ -152,6 +153,8 @@ tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
     v->list_groups = s->cells.list_groups;
     v->dt = s->dt;
     v->acceleration = s->sim->acceleration;
+    v->scalars = f->scalars;
+    v->lift = sph_scalars_lift(s);
     for (int a = 0; a < 3; a++) v->gravity[a] = a < v->dimension ? (float)s->gravity[a] : 0;
     return TOBI_OK;
 }

@@ -71,6 +71,8 @@ typedef struct isph_view {
     int32_t side[2][3];              /* lower and upper sides of the domain, units of the records   */
     float gravity[3];                /* m/s2                                                        */
     tobi_acceleration acceleration;  /* besides gravity                                             */
+    tobi_scalar_lift lift;           /* likewise, by temperature and concentration                  */
+    const tobi_double2 *TOBI_RESTRICT scalars;
     float gravity_dt;                /* s: dt while velocities hold the step's gravity, else 0      */
     double density;                  /* kg/m3                                                       */
     double dt, motion_dt;            /* s; motion_dt: the step that motion alone allows             */

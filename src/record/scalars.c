@@ -1,0 +1,82 @@
+/* scalars.csv: temperature and concentration of the liquids, and what comes through sides and bodies, as
+   often as the probes are read. */
+#include "record/columns.h"
+#include "record/record.h"
+#include "world/world.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define V(name, unit, value, doc) { name, unit },
+static const tobi_csv_column of_all[] = { SCALAR(V) }, of_flow[] = { SCALAR_FLOW(V) };
+#undef V
+enum { OF_ALL = sizeof of_all/sizeof *of_all, OF_FLOW = sizeof of_flow/sizeof *of_flow, NAME = 160 };
+
+typedef struct header { tobi_csv_column *columns; char (*names)[NAME]; int count, dimension; } header;
+
+/* kg where the amount has no heat capacity. */
+static const char *find_unit(const char *unit, int field)
+{
+    if (field == TOBI_TEMPERATURE) return unit;
+    return strcmp(unit, "J") == 0 ? "kg" : strcmp(unit, "W") == 0 ? "kg/s" : unit;
+}
+
+static void add(header *h, const char *before, const char *field, const tobi_csv_column *column,
+                const char *unit)
+{
+    char *name = h->names[h->count];
+    snprintf(name, NAME, "%s%s%s_%s", before, *before ? "_" : "", field, column->name);
+    h->columns[h->count++] = (tobi_csv_column){ name, tobi_run_unit(unit, h->dimension) };
+}
+
+static void list_columns(const tobi_world *w, header *h)
+{
+    static const char *const fields[] = { "temperature", "concentration" };
+    tobi_scalar_info i;
+    tobi_scalar_flow f;
+    const char *name;
+    h->columns[h->count++] = (tobi_csv_column){ "time", "s" };
+    for (int k = 0; tobi_world_scalar(w, k, &i); k++)
+        for (int v = 0; v < OF_ALL; v++)
+            add(h, "", i.field, &of_all[v], strcmp(of_all[v].unit, "degC") == 0 ? i.unit
+                : find_unit(of_all[v].unit, strcmp(i.field, fields[0]) == 0 ? TOBI_TEMPERATURE
+                                                                           : TOBI_CONCENTRATION));
+    for (int k = 0; (name = tobi_world_scalar_flow(w, k, &f)); k++)
+        for (int v = 0; v < OF_FLOW; v++) add(h, name, fields[f.field], &of_flow[v],
+                                              find_unit(of_flow[v].unit, f.field));
+}
+
+tobi_status tobi_scalars_open(tobi_run *run, bool continued, tobi_error *err)
+{
+    const tobi_world *w = run->world;
+    const size_t most = 1 + TOBI_SCALAR_LIMIT*OF_ALL + TOBI_SCALAR_VALUE_LIMIT*OF_FLOW;
+    header h = { .dimension = w->sim.def.dimension };
+    if (!tobi_world_scalar(w, 0, NULL)) return TOBI_OK;
+    h.columns = calloc(most, sizeof *h.columns);
+    h.names = calloc(most, sizeof *h.names);
+    tobi_status status = h.columns && h.names ? TOBI_OK
+                                              : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    if (status == TOBI_OK) list_columns(w, &h);
+    if (status == TOBI_OK)
+        status = tobi_table_open(run, "scalars.csv", continued, tobi_world_time(w), h.columns, h.count,
+                                 &run->scalars, err);
+    free(h.columns);
+    free(h.names);
+    return status;
+}
+
+tobi_status tobi_scalars_write(tobi_run *run, double before, tobi_error *err)
+{
+    const double now = tobi_world_time(run->world);
+    tobi_scalar_info i;
+    tobi_scalar_flow f;
+    if (!run->scalars || !tobi_record_is_due(run->output.probe_interval, before, now)) return TOBI_OK;
+    if (tobi_csv_is_gone(run->scalars))
+        TOBI_TRY(tobi_trouble_pass(run, TOBI_KIND_TABLES, run->outputs, tobi_record_keep_dir(run, err), err));
+    tobi_csv_add_real(run->scalars, now);
+#define V(name, unit, value, doc) tobi_csv_add_real(run->scalars, value);
+    for (int k = 0; tobi_world_scalar(run->world, k, &i); k++) { SCALAR(V) }
+    for (int k = 0; tobi_world_scalar_flow(run->world, k, &f); k++) { SCALAR_FLOW(V) }
+#undef V
+    return tobi_trouble_pass(run, TOBI_KIND_TABLES, run->outputs, tobi_csv_end_row(run->scalars, err), err);
+}

@@ -1,0 +1,143 @@
+/* Temperature and concentration: diffusion between particles and at walls, and what a shift of positions
+   changes. Both at once; equation numbers: docs/theory/scalars.md. */
+#pragma once
+#include "sph/sph.k.h"
+
+/* Below it neighbours lie on a line, and there is no gradient. */
+#define SPH_SCALAR_FLAT 1e-3f
+
+/* Differences from the values at the start are exact enough in single precision. */
+TOBI_FN void sph_scalar_look(const sph_view *v, int64_t i, double *totals)
+{
+    const int f = v->fluid[i];
+    const tobi_scalar_lift *l = &v->scalar.lift;
+    const float eddy = v->viscous.apparent ? v->eddy[f]*v->viscous.apparent[i].y*v->inverse_density[f] : 0;
+    const tobi_float4 out = {(float)(v->scalars[i].x - l->value[0]), (float)(v->scalars[i].y - l->value[1]),
+                             eddy, 1/v->inverse_density[f]};
+    (void)totals;
+    v->scalar_now[i] = out;
+}
+
+typedef struct sph_scalar_spread_acc {
+    lane own[4], spread[2], low[2], high[2], slope[2][3];
+    lane xx, yy, zz, xy, yz, zx;
+} sph_scalar_spread_acc;
+
+TOBI_FN void sph_scalar_spread_start(const sph_view *v, int64_t i, sph_scalar_spread_acc *a)
+{
+    const tobi_float4 c = v->scalar_now[i];
+    a->own[0] = lane_set(c.x); a->own[1] = lane_set(c.y);
+    a->own[2] = lane_set(c.z); a->own[3] = lane_set(c.w);
+    for (int k = 0; k < 2; k++) {
+        a->spread[k] = a->low[k] = a->high[k] = lane_set(0);
+        for (int b = 0; b < 3; b++) a->slope[k][b] = lane_set(0);
+    }
+    a->xx = a->yy = a->zz = a->xy = a->yz = a->zx = lane_set(0);
+}
+
+/* Pairs of different density have its harmonic mean: what one gives the other takes. */
+TOBI_FN void sph_scalar_spread_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
+                                    sph_scalar_spread_acc *a, const int shape)
+{
+    const lane r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
+    lane c[4];
+    (void)i;
+    lane_load_float4(v->scalar_now, n->j, &c[0], &c[1], &c[2], &c[3]);
+    const lane mixed = 2*c[3]/(c[3] + a->own[3]), eddy = 0.5f*(c[2] + a->own[2]);
+    for (int k = 0; k < 2; k++) {
+        const lane change = c[k] - a->own[k], near = lane_where_less(lane_set(0), f, change, lane_set(0));
+        a->spread[k] += f*mixed*(v->scalar.diffusivity[k] + v->scalar.per_eddy[k]*eddy)*change;
+        a->high[k] += lane_positive(near - a->high[k]);
+        a->low[k] -= lane_positive(a->low[k] - near);
+        a->slope[k][0] -= f*change*n->dx;
+        a->slope[k][1] -= f*change*n->dy;
+        a->slope[k][2] -= f*change*n->dz;
+    }
+    a->xx += f*n->dx*n->dx; a->yy += f*n->dy*n->dy; a->zz += f*n->dz*n->dz;
+    a->xy += f*n->dx*n->dy; a->yz += f*n->dy*n->dz; a->zx += f*n->dz*n->dx;
+}
+
+/* Eq. (3), unit/s, of a wall at the distance s, whose integral of the kernel is sigma, on a particle with c
+   of density rho. */
+TOBI_FN float sph_scalar_wall_rate(const sph_view *v, const tobi_scalar_wall *w, float diffusivity,
+                                   float sigma, float s, float c, float rho)
+{
+    const float conducted = w->fixed*diffusivity*(w->value - c)/(w->resistance*rho*diffusivity + s);
+    return 2*v->scalar.lattice*sigma*(w->flux/rho + conducted);
+}
+
+/* The gradients: M x = slope, M of the neighbours. 0 where they do not span the space. */
+TOBI_FN int sph_scalar_gradient(const sph_view *v, const sph_scalar_spread_acc *a, float x[2][3])
+{
+    const float m = v->slope, xx = m*lane_sum(a->xx), yy = m*lane_sum(a->yy), xy = m*lane_sum(a->xy),
+                yz = m*lane_sum(a->yz), zx = m*lane_sum(a->zx),
+                zz = v->dimension == 3 ? m*lane_sum(a->zz) : 1;
+    const float px = yy*zz - yz*yz, py = zx*yz - xy*zz, pz = xy*yz - yy*zx, det = xx*px + xy*py + zx*pz;
+    const float qy = xx*zz - zx*zx, qz = xy*zx - xx*yz, rz = xx*yy - xy*xy;
+    if (!(det > SPH_SCALAR_FLAT)) return 0;
+    for (int k = 0; k < 2; k++) {
+        const float gx = m*lane_sum(a->slope[k][0])/det, gy = m*lane_sum(a->slope[k][1])/det,
+                    gz = m*lane_sum(a->slope[k][2])/det;
+        x[k][0] = px*gx + py*gy + pz*gz;
+        x[k][1] = py*gx + qy*gy + qz*gz;
+        x[k][2] = pz*gx + qz*gy + rz*gz;
+    }
+    return 1;
+}
+
+/* Least and most of the lanes and 0. */
+TOBI_FN float sph_scalar_limit(lane low, lane high, float x)
+{
+    float least = 0, most = 0;
+    for (int k = 0; k < TOBI_LANES; k++) {
+        if (lane_at(low, k) < least) least = lane_at(low, k);
+        if (lane_at(high, k) > most) most = lane_at(high, k);
+    }
+    return x < least ? least : x > most ? most : x;
+}
+
+/* Eq. (1), (4) into scalar_change. totals: what the shift adds to each, by mass; what it takes. */
+TOBI_FN void sph_scalar_spread_finish(const sph_view *v, int64_t i, sph_scalar_spread_acc *a, double *totals)
+{
+    const tobi_float4 now = v->scalar_now[i], shift = v->accel[i];
+    const float own[2] = {now.x, now.y}, way = v->scalar.way*v->scalar.way, mass = v->volume*now.w;
+    float gradient[2][3], rate[2], moved[2] = {0, 0};
+    const tobi_float4 none = {0, 0, 0, 0};
+    if (sph_driven(v, i)) {
+        v->scalar_change[i] = none;
+        return;
+    }
+    for (int k = 0; k < 2; k++) rate[k] = 2*v->slope*lane_sum(a->spread[k]);
+    for (int p = 0; p < v->plane_count; p++) {
+        const float at = sph_plane_distance(v, p, i), s = at > 0.25f*v->spacing ? at : 0.25f*v->spacing;
+        if (at >= v->h) continue;
+        for (int k = 0; k < 2; k++)
+            rate[k] += sph_scalar_wall_rate(v, &v->scalar.plane[p][k],
+                                            v->scalar.diffusivity[k] + v->scalar.per_eddy[k]*now.z,
+                                            sph_plane_value(v, v->table->sigma, s), s, own[k], now.w);
+    }
+    if (sph_scalar_gradient(v, a, gradient))
+        for (int k = 0; k < 2; k++)
+            moved[k] = sph_scalar_limit(a->low[k], a->high[k],
+                                        way*(shift.x*gradient[k][0] + shift.y*gradient[k][1] +
+                                             shift.z*gradient[k][2]));
+    for (int k = 0; k < 2; k++) {
+        totals[k] += moved[k] > 0 ? (double)mass*moved[k] : 0;
+        totals[2 + k] -= moved[k] < 0 ? (double)mass*moved[k] : 0;
+    }
+    const tobi_float4 out = {v->scalar.dt*rate[0], v->scalar.dt*rate[1], moved[0], moved[1]};
+    v->scalar_change[i] = out;
+}
+
+/* Eq. (5): the shift neither makes nor takes any.
+   totals: W, what the change of weight gives. */
+TOBI_FN void sph_scalar_take(const sph_view *v, int64_t i, double *totals)
+{
+    const tobi_float4 c = v->scalar_change[i], u = v->velocity[i];
+    tobi_double2 *own = &v->scalars[i];
+    float lift[3] = {0, 0, 0};
+    tobi_scalar_add_lift(&v->scalar.lift, *own, lift);
+    totals[0] += (double)v->volume*v->scalar_now[i].w*(lift[0]*u.x + lift[1]*u.y + lift[2]*u.z);
+    own->x += (double)c.x + (double)c.z*(c.z > 0 ? v->scalar.gain[0] : v->scalar.loss[0]);
+    own->y += (double)c.y + (double)c.w*(c.w > 0 ? v->scalar.gain[1] : v->scalar.loss[1]);
+}

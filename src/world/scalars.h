@@ -1,0 +1,16 @@
+/* Temperature and concentration of the particles of a system that has them; calls do nothing to others. */
+#pragma once
+#include "core/system.h"
+
+struct tobi_world;
+
+/* The state field of both; NULL without. */
+tobi_double2 *tobi_scalars_of(const tobi_particles *p);
+/* Gives all particles the values that they start with, inlets apart. */
+void tobi_scalars_start(tobi_system *s);
+/* Those of a new particle, which has its place and fluid; inlet: opening that lets it in, -1: none. */
+void tobi_scalars_place(tobi_system *s, int64_t i, int inlet);
+/* Those of particle `of`. */
+void tobi_scalars_repeat(tobi_system *s, int64_t i, int64_t of);
+/* Adds a note for each value that changes the weight of the liquid much. */
+tobi_status tobi_world_note_scalars(struct tobi_world *w, tobi_error *err);
