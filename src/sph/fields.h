@@ -86,7 +86,11 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
     X(tobi_float4, TOBI_F32, 4, porous,       TOBI_SCRATCH, SPH_NEED_POROUS, "1", \
       "drag of its zone in the step, sph/porous.k.h") \
     X(tobi_float4, TOBI_F32, 4, porous_before, TOBI_SCRATCH, SPH_NEED_POROUS, "m/s", \
-      "velocity before the step; w: 1 + number of its zone, 0: none") \
+      "velocity before the step; w: 1 + number of its zone, 0: none, -1: held") \
+    X(tobi_float4, TOBI_F32, 4, porous_taken, TOBI_SCRATCH, SPH_NEED_POROUS, "m/s", \
+      "what zones have taken of the velocity in the step; isph alone") \
+    X(tobi_float4, TOBI_F32, 4, porous_kept,  TOBI_SCRATCH, SPH_NEED_POROUS, "m/s", \
+      "velocity before the pressure; isph alone") \
     X(tobi_double2, TOBI_F64, 2, scalars,     TOBI_STATE,   SPH_NEED_SCALARS, "1", \
       "temperature, concentration") \
     X(tobi_float4, TOBI_F32, 4, scalar_now,   TOBI_SCRATCH, SPH_NEED_SCALARS, "1", \

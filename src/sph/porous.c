@@ -72,7 +72,8 @@ static void begin_range(const void *view, int64_t begin, int64_t end, double *to
         int k = 0;
         const int held = sph_of(s)->marked && f->held && f->held[i].w != 0;
         const tobi_porous *z = held ? NULL : find_zone(s, &s->particles.position[i].x, &k);
-        f->porous[i] = f->porous_before[i] = none;
+        f->porous[i] = none;
+        f->porous_before[i] = (tobi_float4){ v.x, v.y, v.z, held ? -1 : 0 };
         if (!z) continue;
         find_normal(z, &s->particles.position[i].x, n);
         const double speed = take_part(z, n, u, part);

@@ -7,11 +7,11 @@
 #include "sph/isph/isph.h"
 #include "sph/isph/fields.h"
 #include "sph/isph/forces.h"
+#include "sph/isph/porous.h"
 #include "sph/isph/verbs.h"
 #include "sph/kernels.h"
 #include "sph/openings.h"
 #include "sph/phases.h"
-#include "sph/porous.h"
 #include "sph/reference.h"
 #include "sph/sensor/probe.h"
 #include "sph/viscosity.h"
@@ -307,7 +307,7 @@ void isph_forces(tobi_system *s)
     if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     isph_bodies_remove_hydrostatic(s);
     sph_viscosity_solve(s, &without, m->kernel, expect, &clock);
-    sph_porous_brake(s);
+    isph_porous_brake(s);
     launch(s, m, m->kernel->isph_gravity, NULL);
     sph_openings_hold(s);
 }
@@ -352,9 +352,10 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     isph_forces_correct(&m->solver, s);
     sph_soft_correct(s, m->solver.view.solution);
     sph_openings_continue(s, 1);
+    isph_porous_compare(&m->solver, s);
     launch(s, m, m->kernel->isph_projection, t);
     m->solver.view.porous = NULL;
-    sph_porous_measure(s);
+    isph_porous_measure(s);
     sph_openings_drive(s);
     s->info.force_sum = t[0]*s->smoothing.volume;
     tobi_stage_end(&s->sim->stages, "pressure force", &clock);
