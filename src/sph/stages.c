@@ -121,7 +121,8 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     /* bodies let go act larger with (7c) beside them than with (7b), decision 28 */
     v->exact = v->full && v->stretch && !tobi_body_any_free(s->sim->bodies, s->sim->body_count) &&
                tobi_system_density_ratio(s) == 1;
-    v->blind = v->exact;
+    /* with it a tank lost volume in which salt water ran under fresh water */
+    v->blind = v->exact && !sph_scalars_lift(s).acts;
     bind_stage(v, f);
     v->held = sph_of(s)->marked ? f->held : NULL;
     v->porous = NULL;
