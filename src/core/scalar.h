@@ -37,6 +37,7 @@ typedef struct tobi_scalar_lift {
     int acts;
     double value[TOBI_SCALAR_LIMIT];
     float per_unit[TOBI_SCALAR_LIMIT][3];
+    float share[TOBI_SCALAR_LIMIT];            /* -expansion, 1/unit                                   */
 } tobi_scalar_lift;
 
 TOBI_FN void tobi_scalar_add_lift(const tobi_scalar_lift *l, tobi_double2 c, float g[3])
@@ -45,4 +46,14 @@ TOBI_FN void tobi_scalar_add_lift(const tobi_scalar_lift *l, tobi_double2 c, flo
                 denser = (float)(c.y - l->value[TOBI_CONCENTRATION]);
     for (int a = 0; a < 3; a++)
         g[a] += warmer*l->per_unit[TOBI_TEMPERATURE][a] + denser*l->per_unit[TOBI_CONCENTRATION][a];
+}
+
+/* The same to what acts besides gravity, such as a frame that moves: `more`, m/s2. */
+TOBI_FN void tobi_scalar_add_share(const tobi_scalar_lift *l, tobi_double2 c, const double more[3],
+                                   float g[3])
+{
+    const float warmer = (float)(c.x - l->value[TOBI_TEMPERATURE]),
+                denser = (float)(c.y - l->value[TOBI_CONCENTRATION]),
+                share = warmer*l->share[TOBI_TEMPERATURE] + denser*l->share[TOBI_CONCENTRATION];
+    for (int a = 0; a < 3; a++) g[a] += share*(float)more[a];
 }

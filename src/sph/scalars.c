@@ -21,6 +21,7 @@ tobi_scalar_lift sph_scalars_lift(const tobi_system *s)
         const tobi_scalar *c = &s->sim->scalar[k];
         lift.value[k] = c->value;
         lift.acts |= c->expansion != 0;
+        lift.share[k] = (float)-c->expansion;
         for (int a = 0; a < s->box.dimension; a++)
             lift.per_unit[k][a] = (float)(-c->expansion*s->sim->def.gravity[a]);
     }
@@ -32,7 +33,13 @@ void sph_scalars_add_lift(const tobi_system *s, int64_t i, double g[3])
     const tobi_scalar_lift lift = sph_scalars_lift(s);
     float more[3] = { 0, 0, 0 };
     if (!lift.acts) return;
-    tobi_scalar_add_lift(&lift, sph_fields_of(&s->particles)->scalars[i], more);
+    const tobi_double2 own = sph_fields_of(&s->particles)->scalars[i];
+    double beside[3];
+    tobi_scalar_add_lift(&lift, own, more);
+    if (s->sim->acceleration.acts) {
+        tobi_acceleration_at(&s->sim->acceleration, &s->particles.position[i].x, beside);
+        tobi_scalar_add_share(&lift, own, beside, more);
+    }
     for (int a = 0; a < 3; a++) g[a] += more[a];
 }
 
@@ -44,7 +51,7 @@ static tobi_scalar_wall find_wall(const tobi_system *s, int field, int kind, int
         const tobi_scalar_place *p = &s->sim->scalar_place[k];
         if (p->field != field || p->kind != kind || p->number != number) continue;
         wall = p->wall;
-        wall.value -= (float)s->sim->scalar[field].value;
+        if (p->wall.fixed != 0) wall.value = (float)(p->value - s->sim->scalar[field].value);
     }
     return wall;
 }
@@ -78,12 +85,29 @@ void sph_scalars_bind(const tobi_system *s, sph_view *v)
     }
 }
 
+/* m2/s: of a step of length 1. */
+static double find_most(const tobi_system *s)
+{
+    return 0.8/(2*s->smoothing.rate + 2*s->smoothing.plane.sigma[0]/(0.25*s->smoothing.spacing));
+}
+
 double sph_scalars_dt(const tobi_system *s)
 {
-    const double rate = 2*s->smoothing.rate + 2*s->smoothing.plane.sigma[0]/(0.25*s->smoothing.spacing);
     double most = 0;
     for (int k = 0; k < TOBI_SCALAR_LIMIT; k++) most = fmax(most, s->sim->scalar[k].diffusivity);
-    return most > 0 ? 0.8/(most*rate) : INFINITY;
+    return most > 0 ? find_most(s)/most : INFINITY;
+}
+
+/* Eddies that mix neighbours within a step do so at the most that is stable. */
+static float find_most_eddy(const tobi_system *s)
+{
+    double most = INFINITY;
+    for (int k = 0; k < TOBI_SCALAR_LIMIT; k++) {
+        const tobi_scalar *c = &s->sim->scalar[k];
+        if (c->given)
+            most = fmin(most, c->turbulent_number*fmax(find_most(s)/s->dt - c->diffusivity, 0));
+    }
+    return (float)most;
 }
 
 typedef struct walls {
@@ -204,6 +228,7 @@ void sph_scalars_spread(tobi_system *s, sph_view *v, const sph_kernels *k)
     if (!v->scalars) return;
     v->scalar.dt = (float)s->dt;
     v->scalar.way = v->dt;
+    v->scalar.most_eddy = find_most_eddy(s);
     tobi_launch(&s->sim->exec, k->sph_scalar_look, v, 0, s->particles.count, NULL);
     tobi_launch(&s->sim->exec, k->sph_scalar_spread, v, 0, s->particles.count, t);
     for (int c = 0; c < TOBI_SCALAR_LIMIT; c++) {

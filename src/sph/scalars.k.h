@@ -11,7 +11,8 @@ TOBI_FN void sph_scalar_look(const sph_view *v, int64_t i, double *totals)
 {
     const int f = v->fluid[i];
     const tobi_scalar_lift *l = &v->scalar.lift;
-    const float eddy = v->viscous.apparent ? v->eddy[f]*v->viscous.apparent[i].y*v->inverse_density[f] : 0;
+    const float all = v->viscous.apparent ? v->eddy[f]*v->viscous.apparent[i].y*v->inverse_density[f] : 0,
+                eddy = all < v->scalar.most_eddy ? all : v->scalar.most_eddy;
     const tobi_float4 out = {(float)(v->scalars[i].x - l->value[0]), (float)(v->scalars[i].y - l->value[1]),
                              eddy, 1/v->inverse_density[f]};
     (void)totals;
@@ -136,7 +137,7 @@ TOBI_FN void sph_scalar_take(const sph_view *v, int64_t i, double *totals)
     const tobi_float4 c = v->scalar_change[i], u = v->velocity[i];
     tobi_double2 *own = &v->scalars[i];
     float lift[3] = {0, 0, 0};
-    tobi_scalar_add_lift(&v->scalar.lift, *own, lift);
+    sph_add_lift(v, i, lift);
     totals[0] += (double)v->volume*v->scalar_now[i].w*(lift[0]*u.x + lift[1]*u.y + lift[2]*u.z);
     own->x += (double)c.x + (double)c.z*(c.z > 0 ? v->scalar.gain[0] : v->scalar.loss[0]);
     own->y += (double)c.y + (double)c.w*(c.w > 0 ? v->scalar.gain[1] : v->scalar.loss[1]);

@@ -220,6 +220,17 @@ TOBI_FN void sph_add_buoyancy(const sph_view *v, int64_t i, float g[3])
     for (int c = 0; c < 3; c++) g[c] += rest*v->removed_gravity[c];
 }
 
+/* What temperature and concentration change of the weight, eq. (2) of scalars. */
+TOBI_FN void sph_add_lift(const sph_view *v, int64_t i, float g[3])
+{
+    double more[3];
+    if (!v->scalar.lift.acts) return;
+    tobi_scalar_add_lift(&v->scalar.lift, v->scalars[i], g);
+    if (!v->acceleration.acts) return;
+    tobi_acceleration_at(&v->acceleration, &v->position[i].x, more);
+    tobi_scalar_add_share(&v->scalar.lift, v->scalars[i], more, g);
+}
+
 /* Gravity less what still water holds, and what acts besides, m/s2. */
 TOBI_FN void sph_gravity(const sph_view *v, int64_t i, float g[3])
 {
@@ -227,7 +238,7 @@ TOBI_FN void sph_gravity(const sph_view *v, int64_t i, float g[3])
                    v->inverse_density[v->fluid[i]];
     for (int c = 0; c < 3; c++) g[c] = v->gravity[c] - (float)(taken*v->reference.down[c]);
     if (v->phase) sph_add_buoyancy(v, i, g);
-    if (v->scalar.lift.acts) tobi_scalar_add_lift(&v->scalar.lift, v->scalars[i], g);
+    sph_add_lift(v, i, g);
     if (!v->acceleration.acts) return;
     double more[3];
     tobi_acceleration_at(&v->acceleration, &v->position[i].x, more);

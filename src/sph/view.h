@@ -20,6 +20,7 @@ typedef struct sph_scalar_constants {
     tobi_scalar_lift lift;
     float diffusivity[TOBI_SCALAR_LIMIT];                /* m2/s                                        */
     float per_eddy[TOBI_SCALAR_LIMIT];                   /* 1: of the eddy viscosity                    */
+    float most_eddy;                                     /* m2/s: of it, in a step of this length       */
     tobi_scalar_wall plane[6][TOBI_SCALAR_LIMIT];        /* of view.plane                               */
     float lattice;                                       /* 1: of sigma, so that walls give their flux  */
     float gain[TOBI_SCALAR_LIMIT], loss[TOBI_SCALAR_LIMIT];      /* 1: of eq. (5)                      */

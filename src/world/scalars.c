@@ -226,10 +226,11 @@ tobi_double2 *tobi_scalars_of(const tobi_particles *p)
     return NULL;
 }
 
-/* Of liquid that comes or starts there; the last that holds counts. */
+/* Of liquid that comes or starts there: what its inlet says, else the last that holds. */
 static tobi_double2 find_value(const tobi_simulation *s, int fluid, int inlet, const double *x, int dimension)
 {
     double value[TOBI_SCALAR_LIMIT];
+    int by_inlet[TOBI_SCALAR_LIMIT] = { 0 };
     for (int k = 0; k < TOBI_SCALAR_LIMIT; k++) value[k] = s->scalar[k].value;
     for (int k = 0; k < s->scalar_place_count; k++) {
         const tobi_scalar_place *p = &s->scalar_place[k];
@@ -237,7 +238,9 @@ static tobi_double2 find_value(const tobi_simulation *s, int fluid, int inlet, c
                     : p->kind == TOBI_SCALAR_AT_FLUID ? p->number == fluid : p->kind == TOBI_SCALAR_AT_BOX;
         for (int a = 0; p->kind == TOBI_SCALAR_AT_BOX && a < dimension; a++)
             holds &= inlet < 0 && x[a] >= p->lower[a] && x[a] < p->upper[a];
-        if (holds) value[p->field] = p->value;
+        if (!holds || by_inlet[p->field]) continue;
+        value[p->field] = p->value;
+        by_inlet[p->field] = p->kind == TOBI_SCALAR_AT_INLET;
     }
     return (tobi_double2){ value[TOBI_TEMPERATURE], value[TOBI_CONCENTRATION] };
 }

@@ -53,6 +53,31 @@ expect 0 "" report whole_isph
 expect 0 "" check tank.json
 check "check tells the range" grep -q "temperature      20 to " out.txt
 
+# Eddies that mix faster than a step can, and an inlet that is named before the fluid that it lets in.
+cat > eddies.json <<'END_OF_SCENE'
+{ "dimension": 2, "method": "dfsph", "domain": { "min": [0, 0], "max": [0.4, 0.3] },
+  "spacing": 0.02, "end_time": 0.3, "implicit_viscosity": true,
+  "fluids": [ { "name": "water", "viscosity": 0.001, "smagorinsky": 0.3,
+                "fill": [ { "box": { "min": [0, 0], "max": [0.16, 0.24] } } ] } ],
+  "inlets": [ { "name": "hose", "fluid": "water", "centre": [0.3, 0.22], "normal": [0, -1], "width": 0.06,
+                "speed": 0.5 } ],
+  "scalars": [ { "field": "temperature", "value": 20, "diffusivity": 1e-6, "turbulent_number": 0.01 } ],
+  "scalar_values": [
+    { "field": "temperature", "inlet": "hose", "value": 40 },
+    { "field": "temperature", "fluid": "water", "value": 30 },
+    { "field": "temperature", "box": { "min": [0, 0], "max": [0.08, 0.24] }, "value": 10 } ],
+  "output": { "interval": 0.2, "probe_interval": 0.01 } }
+END_OF_SCENE
+for method in dfsph isph wcsph; do
+    expect 0 "" run eddies.json --out eddies_$method --quiet --set method=$method --threads 1
+    check "$method: mixed by eddies within what liquid and inlet had" $python -c "
+import csv
+rows = [{k.split(' ')[0]: float(v) for k, v in r.items()}
+        for r in csv.DictReader(open('eddies_$method/scalars.csv'))]
+raise SystemExit(not (all(r['temperature_min'] > 10 - 1e-4 for r in rows) and
+                      all(abs(r['temperature_max'] - 40) < 1e-4 for r in rows)))"
+done
+
 refuse() { local text=$1; shift; expect 1 "$text" check tank.json --set "$@"; }
 refuse "of 2 scalars at most" 'scalars={"field": "temperature"}'
 refuse "there is no body 'stove'" scalar_values[1].body=stove

@@ -20,6 +20,9 @@ static const double START[2] = {20, 0.03}, DIFFUSIVITY[2] = {1e-4, 3e-6}, PER_ED
 
 typedef struct scene { rig g; row *in; tobi_float4 *now, *change; tobi_double2 *own; } scene;
 
+/* Some of the first liquid have more. */
+static double find_most_eddy(const scene *s) { return 28*s->g.view.eddy[0]/s->g.o.rho0[0]; }
+
 static void open_scene(scene *s, const rig_case *c)
 {
     tobi_error err;
@@ -42,6 +45,7 @@ static void open_scene(scene *s, const rig_case *c)
     v->scalar.lattice = 0.97f;
     v->scalar.dt = 2e-3f;
     v->scalar.way = 1e-3f;
+    v->scalar.most_eddy = (float)find_most_eddy(s);
     for (int64_t i = 0; i < s->g.p.count; i++) {
         s->own[i] = (tobi_double2){ START[0] + 5*rig_random(), START[1] + 0.01*rig_random() };
         f->apparent[i] = (tobi_float4){ 1, (float)(20 + 20*rig_random()), 0, 0 };
@@ -62,7 +66,7 @@ static double difference(const scene *s, int k, int i) { return (k ? s->own[i].y
 static double density(const scene *s, int i) { return s->g.o.rho0[s->g.o.fluid[i]]; }
 static double eddy(const scene *s, int i)
 {
-    return s->g.view.eddy[s->g.o.fluid[i]]*s->in[i][SHEAR_RATE]/density(s, i);
+    return fmin(s->g.view.eddy[s->g.o.fluid[i]]*s->in[i][SHEAR_RATE]/density(s, i), find_most_eddy(s));
 }
 
 /* Eq. (1), (3): unit/s. */

@@ -221,6 +221,39 @@ static void warm_liquid_is_lighter(void **state)
     }
 }
 
+/* Gravity in time pulls less at warm liquid, too: half of it is constant, half the crest of a slow swing. */
+static void all_gravity_pulls_less(void **state)
+{
+    const double gravity[3] = { 0, -1, 0 };
+    (void)state;
+    for (int m = 0; m < METHODS; m++) {
+        tobi_world *w = make_slab(methods[m], 2, LENGTH/20, gravity);
+        tobi_scalar_value_def v = tobi_default_scalar_value_def();
+        tobi_gravity_def g = tobi_default_gravity_def();
+        g.amplitude[1] = -1;
+        g.phase[1] = 90;
+        g.period = 1000;
+        OK(tobi_world_set_gravity_in_time(w, &g, &err));
+        add_temperature(w, 20, 0.01);
+        v.fluid = "oil";
+        v.value = 50;
+        OK(tobi_world_add_scalar_value(w, &v, &err));
+        OK(tobi_world_start(w, &err));
+        double work = 0;
+        while (tobi_world_time(w) < 0.2 - 1e-9) {
+            tobi_energy e;
+            OK(tobi_world_step(w, 0.2 - tobi_world_time(w), NULL, &err));
+            OK(tobi_world_energy(w, &e));
+            work += tobi_world_info(w)->dt*e.buoyancy_power;
+        }
+        const tobi_step_info *i = tobi_world_info(w);
+        const double fallen = 2*(1 - 0.3)*0.2*0.2/2;
+        close_to("speed", methods[m], i->momentum[1]/i->mass_held, -2*(1 - 0.3)*0.2, 1e-3);
+        close_to("work", methods[m], work, -i->mass_held*2*0.3*fallen, 0.1);
+        tobi_world_destroy(w);
+    }
+}
+
 #define SAYS(TEXT, ...)                                                  \
     do {                                                                 \
         v = tobi_default_scalar_value_def();                             \
@@ -291,6 +324,7 @@ int main(void)
         cmocka_unit_test(plates_conduct_by_all),      cmocka_unit_test(layers_resist),
         cmocka_unit_test(fluxes_bring_what_they_say), cmocka_unit_test(halves_mix),
         cmocka_unit_test(bodies_conduct),             cmocka_unit_test(warm_liquid_is_lighter),
+        cmocka_unit_test(all_gravity_pulls_less),
         cmocka_unit_test(values_are_checked),         cmocka_unit_test(worlds_that_take_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

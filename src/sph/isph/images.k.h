@@ -30,6 +30,7 @@ TOBI_FN void isph_gravity_at(const isph_view *v, int64_t i, float g[3])
     if (v->lift.acts) tobi_scalar_add_lift(&v->lift, v->scalars[i], g);
     if (!v->acceleration.acts) return;
     tobi_acceleration_at(&v->acceleration, &v->position[i].x, more);
+    if (v->lift.acts) tobi_scalar_add_share(&v->lift, v->scalars[i], more, g);
     for (int a = 0; a < v->dimension; a++) g[a] += (float)more[a];
 }
 
