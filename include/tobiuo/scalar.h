@@ -17,6 +17,7 @@ typedef struct tobi_scalar_def {
     double expansion;              /* per unit: share of its density that liquid loses above `value`   */
     double capacity;               /* J/(kg K), or 1                                                   */
     double turbulent_number;       /* 1: of Prandtl or Schmidt, of eddies below the spacing            */
+    double thinning;               /* per unit: viscosities go as exp(-thinning (c - value))           */
 } tobi_scalar_def;
 
 /* Where a scalar has another value, or what comes through a wall: just one of box, fluid, inlet, side and

@@ -10,6 +10,7 @@ typedef struct tobi_scalar {
     double expansion;               /* 1/unit                                                          */
     double capacity;                /* amount per kg and unit                                          */
     double turbulent_number;        /* 1                                                               */
+    double thinning;                /* 1/unit                                                          */
 } tobi_scalar;
 
 enum { TOBI_SCALAR_AT_BOX, TOBI_SCALAR_AT_FLUID, TOBI_SCALAR_AT_INLET, TOBI_SCALAR_AT_SIDE,

@@ -23,7 +23,7 @@ unsigned sph_needs(const tobi_system *s, int full)
     if (s->sim->opening_count > 0) needs |= SPH_NEED_OPENINGS;
     if (s->sim->def.implicit_viscosity) needs |= SPH_NEED_IMPLICIT;
     for (int f = 0; f < s->fluid_count && s->sim->def.implicit_viscosity; f++)
-        if (!tobi_fluid_is_newtonian(&s->fluid[f])) needs |= SPH_NEED_APPARENT;
+        if (!tobi_fluid_is_newtonian(&s->fluid[f]) || sph_scalars_thin(s)) needs |= SPH_NEED_APPARENT;
     if (s->sim->porous_count > 0) needs |= SPH_NEED_POROUS;
     if (sph_scalars_any(s)) needs |= SPH_NEED_SCALARS;
     return needs;

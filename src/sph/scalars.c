@@ -14,6 +14,13 @@ int sph_scalars_any(const tobi_system *s)
     return any;
 }
 
+int sph_scalars_thin(const tobi_system *s)
+{
+    int any = 0;
+    for (int k = 0; k < TOBI_SCALAR_LIMIT; k++) any |= s->sim->scalar[k].thinning != 0;
+    return any;
+}
+
 tobi_scalar_lift sph_scalars_lift(const tobi_system *s)
 {
     tobi_scalar_lift lift = { 0 };
@@ -73,11 +80,13 @@ void sph_scalars_bind(const tobi_system *s, sph_view *v)
     const sph_fields *f = sph_fields_of(&s->particles);
     v->scalars = f->scalars; v->scalar_now = f->scalar_now; v->scalar_change = f->scalar_change;
     v->scalar.lift = sph_scalars_lift(s);
+    v->scalar.thins = sph_scalars_thin(s);
     if (!v->scalars) return;
     v->scalar.lattice = (float)find_lattice(&s->smoothing);
     for (int k = 0; k < TOBI_SCALAR_LIMIT; k++) {
         const tobi_scalar *c = &s->sim->scalar[k];
         v->scalar.diffusivity[k] = (float)c->diffusivity;
+        v->scalar.thinning[k] = (float)c->thinning;
         v->scalar.per_eddy[k] = c->given ? (float)(1/c->turbulent_number) : 0;
         for (int p = 0; p < v->plane_count; p++)
             v->scalar.plane[p][k] = find_wall(s, k, TOBI_SCALAR_AT_SIDE,

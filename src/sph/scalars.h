@@ -5,6 +5,8 @@
 
 /* Whether the liquids have any. */
 int sph_scalars_any(const tobi_system *s);
+/* Whether they change viscosities. */
+int sph_scalars_thin(const tobi_system *s);
 /* How they change gravity. */
 tobi_scalar_lift sph_scalars_lift(const tobi_system *s);
 /* Adds that of a particle to g, m/s2. */

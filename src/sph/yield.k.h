@@ -56,7 +56,16 @@ TOBI_FN void sph_strain_finish(const sph_view *v, int64_t i, sph_strain_acc *a, 
     v->viscous.residual[i] = row[2];
 }
 
-/* apparent = the viscosity, eq. (6), and the shear rate, eq. (6b). */
+/* Eq. (6d): of the viscosity, by temperature and concentration. */
+TOBI_FN float sph_thinner(const sph_view *v, int64_t i)
+{
+    const tobi_scalar_lift *l = &v->scalar.lift;
+    const float power = v->scalar.thinning[0]*(float)(v->scalars[i].x - l->value[0]) +
+                        v->scalar.thinning[1]*(float)(v->scalars[i].y - l->value[1]);
+    return lane_at(lane_exp(lane_set(-power)), 0);
+}
+
+/* apparent = the viscosity, eq. (6), (6d), and the shear rate, eq. (6b). */
 TOBI_FN void sph_apparent(const sph_view *v, int64_t i, double *totals)
 {
     const tobi_float4 a = v->viscous.turning[i], b = v->viscous.lack[i];
@@ -72,7 +81,8 @@ TOBI_FN void sph_apparent(const sph_view *v, int64_t i, double *totals)
     const float rate = 2*(xx*xx + yy*yy + zz*zz) + xy*xy + yz*yz + zx*zx, faster = sqrtf(rate + creep*creep);
     const lane thinner = lane_exp((v->flow_index[f] - 1)*lane_log1p(lane_set(faster/creep - 1)));
     const float shear = sqrtf(rate), eddy = v->eddy[f]*shear;
-    const float mu = v->creep_viscosity[f]*lane_at(thinner, 0) + v->yield_stress[f]/faster + eddy;
+    float mu = v->creep_viscosity[f]*lane_at(thinner, 0) + v->yield_stress[f]/faster;
     (void)totals;
-    v->viscous.apparent[i] = (tobi_float4){mu, shear, 0, 0};
+    if (v->scalar.thins) mu *= sph_thinner(v, i);
+    v->viscous.apparent[i] = (tobi_float4){mu + eddy, shear, 0, 0};
 }

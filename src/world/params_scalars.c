@@ -22,6 +22,9 @@ static const tobi_param scalar_rows[] = {
       RANGE(0.01, 100), .unit = "1",
       .doc = "Prandtl or Schmidt number of eddies below the spacing: their viscosity (smagorinsky of a "
              "fluid) over their diffusivity." },
+    { .key = "thinning", REAL, AT(tobi_scalar_def, thinning), RANGE(-100, 100), .unit = "1/unit",
+      .doc = "Viscosities of the liquids go as exp(-thinning (c - value)): 0.02 for water, some 0.1 for "
+             "honey. Needs implicit_viscosity." },
     { 0 }
 };
 

@@ -38,8 +38,12 @@ tobi_status tobi_world_add_scalar(tobi_world *w, const tobi_scalar_def *def, tob
     TOBI_TRY(check_world(w, err));
     tobi_scalar *c = &w->sim.scalar[def->field];
     if (c->given) REFUSE("field", "%s is given already; allowed is once", field_name[def->field]);
+    if (def->thinning != 0 && !w->sim.def.implicit_viscosity)
+        return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "%s changes viscosities by %.10g, and "
+                           "implicit_viscosity is false; allowed without it is 0", field_name[def->field],
+                           def->thinning), "thinning");
     *c = (tobi_scalar){ 1, def->value, def->diffusivity, def->expansion, def->capacity,
-                        def->turbulent_number };
+                        def->turbulent_number, def->thinning };
     return TOBI_OK;
 }
 

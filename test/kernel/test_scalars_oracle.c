@@ -2,6 +2,7 @@
    the same bits on every instruction set; what pairs exchange is neither made nor lost. */
 #pragma GCC diagnostic ignored "-Wunused-function"     /* the rig has the oracles of all kernels */
 #include "sph/scalars.k.h"
+#include "sph/yield.k.h"
 #include "kernel/sph_rig.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -176,6 +177,20 @@ static void amounts_stay(void **state)
     close_scene(&s);
 }
 
+static void viscosity_falls_as_it_should(void **state)
+{
+    scene s;
+    (void)state;
+    open_scene(&s, &cases[0]);
+    s.g.view.scalar.thinning[0] = 0.3f;
+    s.g.view.scalar.thinning[1] = -20;
+    for (int i = 0; i < s.g.p.count; i++) {
+        const double expected = exp(-0.3*difference(&s, 0, i) + 20*difference(&s, 1, i));
+        assert_true(fabs(sph_thinner(&s.g.view, i)/expected - 1) < 1e-5);
+    }
+    close_scene(&s);
+}
+
 static uint64_t run_all(const rig_case *c, const sph_kernels *k)
 {
     scene s;
@@ -207,6 +222,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(kernels_follow_the_equations),
         cmocka_unit_test(amounts_stay),
+        cmocka_unit_test(viscosity_falls_as_it_should),
         cmocka_unit_test(instruction_sets_give_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -254,6 +254,54 @@ static void all_gravity_pulls_less(void **state)
     }
 }
 
+/* Between plates at two temperatures the stress is the same everywhere: where it is warm, liquid is thin and
+   sheared most. The lower plate moves; u(x)/U = (e^k - e^(k x/L))/(e^k - 1) of the distance from it. */
+static void warm_liquid_is_thinner(const char *method)
+{
+    tobi_world_def d = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_scalar_def s = tobi_default_scalar_def();
+    tobi_world *w = NULL;
+    d.method = method;
+    d.dimension = 2;
+    d.spacing = LENGTH/20;
+    d.threads = 1;
+    d.end_time = 100;
+    d.implicit_viscosity = 1;
+    d.domain_max[0] = fill.box_max[0] = LENGTH;
+    d.domain_max[1] = fill.box_max[1] = HEIGHT;
+    memset(d.gravity, 0, sizeof d.gravity);
+    d.wall_min[0] = d.wall_max[0] = TOBI_WALL_NO_SLIP;
+    d.wall_min[1] = d.wall_max[1] = TOBI_WALL_PERIODIC;
+    d.wall_velocity_min[0][1] = 1;
+    fluid.viscosity = 4000;
+    OK(tobi_world_create(&d, NULL, &w, &err));
+    OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
+    s.diffusivity = D;
+    s.thinning = 1;
+    OK(tobi_world_add_scalar(w, &s, &err));
+    add_side(w, TOBI_X_MIN, 0, 0, 0);
+    add_side(w, TOBI_X_MAX, 1, 0, 0);
+    advance(w, 0.8*LENGTH*LENGTH/D);
+    const int64_t n = tobi_world_count(w, TOBI_FLUID);
+    double *x = calloc((size_t)n, 3*sizeof *x), *u = calloc((size_t)n, 3*sizeof *u), worst = 0;
+    OK(tobi_world_read(w, TOBI_FLUID, "position", x, n*3, &err));
+    OK(tobi_world_read(w, TOBI_FLUID, "velocity", u, n*3, &err));
+    for (int64_t i = 0; i < n; i++)
+        worst = fmax(worst, fabs(u[3*i + 1] - (exp(1) - exp(x[3*i]/LENGTH))/(exp(1) - 1)));
+    if (!(worst < 0.02)) fail_msg("%s: off by %g of the speed of the plate", method, worst);
+    free(x);
+    free(u);
+    tobi_world_destroy(w);
+}
+
+static void warm_liquid_is_thinner_by_all(void **state)
+{
+    (void)state;
+    for (int m = 0; m < METHODS; m++) warm_liquid_is_thinner(methods[m]);
+}
+
 #define SAYS(TEXT, ...)                                                  \
     do {                                                                 \
         v = tobi_default_scalar_value_def();                             \
@@ -270,6 +318,11 @@ static void values_are_checked(void **state)
     SAYS("no temperature; scalars are to have it", v.side = TOBI_X_MIN; v.value = 1;);
     add_temperature(w, 20, 0);
     REFUSED(tobi_world_add_scalar(w, &s, &err), TOBI_INVALID, "temperature is given already");
+    s.thinning = 0.1;
+    s.field = TOBI_CONCENTRATION;
+    REFUSED(tobi_world_add_scalar(w, &s, &err), TOBI_UNSUPPORTED,
+            "concentration changes viscosities by 0.1, and implicit_viscosity is false");
+    s = tobi_default_scalar_def();
     SAYS("at none of box, fluid, inlet, side and body; allowed is one", v.value = 1;);
     SAYS("at more than one of", v.value = 1; v.side = TOBI_X_MIN; v.fluid = "oil";);
     SAYS("has no value there", v.fluid = "oil";);
@@ -325,6 +378,7 @@ int main(void)
         cmocka_unit_test(fluxes_bring_what_they_say), cmocka_unit_test(halves_mix),
         cmocka_unit_test(bodies_conduct),             cmocka_unit_test(warm_liquid_is_lighter),
         cmocka_unit_test(all_gravity_pulls_less),
+        cmocka_unit_test(warm_liquid_is_thinner_by_all),
         cmocka_unit_test(values_are_checked),         cmocka_unit_test(worlds_that_take_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
