@@ -238,7 +238,7 @@ TOBI_API const char *tobi_method_field(const char *method, int index);
 TOBI_API int tobi_body_has_field(int field);
 /* Copies a field into buffer (count x components doubles, row-major, id order). "id" is another name of
    "particle_id". Of a world that has diverged pressures, and others that follow from neighbours, are NaN
-   by the methods of fluids. */
+   by the methods of fluids. TOBI_NOT_FOUND for a temperature or concentration that the world has not. */
 TOBI_API tobi_status tobi_world_read(tobi_world *world, tobi_set set, const char *field,
                                      double *buffer, int64_t count, tobi_error *err);
 /* Copies the ids as integers; the same errors. */

@@ -275,7 +275,8 @@ class World:
         """The fields that `read` knows: (numbers per particle, unit) by name."""
         method = lib.tobi_scene_world_def(self._scene).method
         mine = _list_names(lib.tobi_method_field, method)
-        return {name: what for name, what in _list_fields().items() if name in mine}
+        absent = {"temperature", "concentration"} - set(self.scalars)
+        return {name: what for name, what in _list_fields().items() if name in mine and name not in absent}
 
     def read(self, field, of="fluid"):
         """A copy of a field, in the order of rising ids: n numbers, or n x components."""

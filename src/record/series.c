@@ -3,6 +3,7 @@
 #include "geom/texture.h"
 #include "io/exchange.h"
 #include "record/record.h"
+#include "world/scalars.h"
 #include "world/world.h"
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +42,7 @@ tobi_status tobi_record_find_field(const tobi_run *run, const char *key, const c
     for (int n = 0; n < w->system_count && find_field(name, length, field) == TOBI_OK; n++)
         for (int k = 0; (known = tobi_method_field(w->system[n].method->name, k)); k++)
             has |= strcmp(known, field->name) == 0;
-    if (has) return TOBI_OK;
+    if (has && tobi_scalars_know(w, field->name, NULL) == TOBI_OK) return TOBI_OK;
     return tobi_fail(err, TOBI_INVALID, "%s: there is no field '%.*s' of %s", key, (int)length, name,
                      w->system[0].method->name);
 }

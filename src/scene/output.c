@@ -48,12 +48,22 @@ json_t *tobi_output_write(const tobi_scene *scene)
     return NULL;
 }
 
+/* The scene has it, or it is no scalar. */
+static int knows(const tobi_scene_tank *tank, const char *field)
+{
+    static const char *const scalar[] = { "temperature", "concentration" };
+    int count = 0, scalars = 0;
+    for (int k = 0; k < TOBI_SCALAR_LIMIT; k++) scalars |= strcmp(field, scalar[k]) == 0;
+    for (int k = 0; k < tank->scalar_count; k++) count += strcmp(field, scalar[tank->scalars[k].field]) == 0;
+    return count > 0 || !scalars;
+}
+
 /* Appends the fields of a method that are not there yet. */
-static int list_fields(const char *method, const char **names, int count, int most)
+static int list_fields(const tobi_scene *scene, const char *method, const char **names, int count, int most)
 {
     const char *name;
     for (int k = 0; count < most && (name = tobi_method_field(method, k)); k++) {
-        int there = 0;
+        int there = !knows(&scene->tank, name);
         for (int n = 0; n < count; n++) there |= strcmp(names[n], name) == 0;
         if (!there) names[count++] = name;
     }
@@ -65,10 +75,15 @@ static void check_field(const tobi_scene *scene, tobi_source *source, const tobi
 {
     enum { FIELDS = 32 };
     const char *names[FIELDS];
-    int count = list_fields(scene->world.method, names, 0, FIELDS);
-    if (scene->solid_count > 0) count = list_fields("mlsmpm", names, count, FIELDS);
+    int count = list_fields(scene, scene->world.method, names, 0, FIELDS);
+    if (scene->solid_count > 0) count = list_fields(scene, "mlsmpm", names, count, FIELDS);
     char all[512] = "";
     if (strcmp(field, "usual") == 0) return;
+    if (!knows(&scene->tank, field)) {
+        tobi_source_mistake(source, place, "is \"%s\", and the scene has none; scalars are to have it",
+                            field);
+        return;
+    }
     for (int k = 0; k < count; k++)
         if (strcmp(names[k], field) == 0) return;
     if (tobi_report_pass(source->report)) return;

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "geom/vec3.h"
 #include "world/step.h"
+#include "world/scalars.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
@@ -313,6 +314,7 @@ static tobi_status find_field(tobi_world *w, tobi_set set, const char *field, in
     while ((known = find_any(k)) && strcmp(known->name, name) != 0) k++;
     if (!known) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
     *found = find_in_world(w, name);
+    TOBI_TRY(tobi_scalars_know(w, name, err));
     if (!*found)
         return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->system[0].method->name, field);
     if (set == TOBI_BODIES && !tobi_body_has_field(k))

@@ -221,6 +221,14 @@ const char *tobi_world_scalar_flow(const tobi_world *w, int number, tobi_scalar_
     return NULL;
 }
 
+tobi_status tobi_scalars_know(const tobi_world *w, const char *field, tobi_error *err)
+{
+    for (int k = 0; k < TOBI_SCALAR_LIMIT; k++)
+        if (strcmp(field, field_name[k]) == 0 && !w->sim.scalar[k].given)
+            return tobi_fail(err, TOBI_NOT_FOUND, "the world has no %s; scalars are to have it", field);
+    return TOBI_OK;
+}
+
 tobi_double2 *tobi_scalars_of(const tobi_particles *p)
 {
     const tobi_field *f;
@@ -276,6 +284,30 @@ void tobi_scalars_start(tobi_system *s)
         tobi_loop(s->sim->exec.threads, s->particles.count, 0, start_range, s);
 }
 
+static int holds_liquid(const tobi_system *s, const tobi_scalar_place *p)
+{
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        const double *x = &s->particles.position[i].x;
+        int holds = 1;
+        for (int a = 0; a < s->box.dimension; a++) holds &= x[a] >= p->lower[a] && x[a] < p->upper[a];
+        if (holds) return 1;
+    }
+    return 0;
+}
+
+/* A value that nothing takes; NULL where it acts. */
+static const char *find_idle(const tobi_world *w, const tobi_scalar_place *p)
+{
+    const tobi_system *s = &w->system[0];
+    double spread = w->sim.scalar[p->field].diffusivity;
+    for (int f = 0; f < s->fluid_count; f++) spread += s->fluid[f].smagorinsky;
+    if (p->kind == TOBI_SCALAR_AT_BOX && !holds_liquid(s, p))
+        return "has no liquid in it at the start: its value does nothing\n";
+    if (p->wall.fixed != 0 && p->kind >= TOBI_SCALAR_AT_SIDE && spread == 0)
+        return "has a value, but nothing passes: the diffusivity is 0\n";
+    return NULL;
+}
+
 tobi_status tobi_world_note_scalars(tobi_world *w, tobi_error *err)
 {
     char text[320];
@@ -283,6 +315,8 @@ tobi_status tobi_world_note_scalars(tobi_world *w, tobi_error *err)
         const tobi_scalar_place *p = &w->sim.scalar_place[k];
         const tobi_scalar *c = &w->sim.scalar[p->field];
         const double change = p->value > TOBI_NO_VALUE ? fabs(c->expansion*(p->value - c->value)) : 0;
+        const char *idle = find_idle(w, p);
+        if (idle) TOBI_TRY(tobi_world_add_notes(w, field_name[p->field], p->name, idle, err));
         if (change <= MOST_CHANGE) continue;
         snprintf(text, sizeof text, "changes the weight of the liquid by %.3g of it; its inertia stays, "
                  "which holds for small changes alone\n", change);

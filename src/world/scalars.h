@@ -12,5 +12,7 @@ void tobi_scalars_start(tobi_system *s);
 void tobi_scalars_place(tobi_system *s, int64_t i, int inlet);
 /* Those of particle `of`. */
 void tobi_scalars_repeat(tobi_system *s, int64_t i, int64_t of);
-/* Adds a note for each value that changes the weight of the liquid much. */
+/* TOBI_NOT_FOUND for the field of a scalar that the world does not have; other fields pass. */
+tobi_status tobi_scalars_know(const struct tobi_world *w, const char *field, tobi_error *err);
+/* Adds a note for each value that changes the weight of the liquid much, and for those that do nothing. */
 tobi_status tobi_world_note_scalars(struct tobi_world *w, tobi_error *err);

@@ -83,6 +83,8 @@ refuse "of 2 scalars at most" 'scalars={"field": "temperature"}'
 refuse "there is no body 'stove'" scalar_values[1].body=stove
 refuse 'is "floor", allowed is none, x_min' scalar_values[0].side=floor
 refuse "temperature is given already" scalars[1].field=temperature
+expect 1 'field: is "temperature", and the scene has none; scalars are to have it' check tank.json \
+    --set "scalars=[]" --set "scalar_values=[]"
 refuse "diffusivity" scalars[0].diffusivity=-1
 expect 0 "" sweep tank.json --set scalar_values[0].value=40,60 --set output.frames=false --until 0.05 --out s
 check "a sweep has the largest flow" grep -q ",max floor_temperature_flow \[W per m\]" s/sweep.csv

@@ -371,6 +371,63 @@ static void worlds_that_take_none(void **state)
     tobi_world_destroy(w);
 }
 
+static tobi_world *start_idle(double upper, double diffusivity, double smagorinsky)
+{
+    tobi_world_def d = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_scalar_def s = tobi_default_scalar_def();
+    tobi_scalar_value_def box = tobi_default_scalar_value_def(), side = box;
+    tobi_world *w = NULL;
+    d.dimension = 2;
+    d.spacing = 0.05;
+    d.implicit_viscosity = smagorinsky > 0;
+    d.domain_max[0] = d.domain_max[1] = fill.box_max[0] = 0.5;
+    fill.box_max[1] = 0.2;
+    fluid.smagorinsky = smagorinsky;
+    s.diffusivity = diffusivity;
+    box.box_max[0] = 0.2;
+    box.box_min[1] = upper - 0.1;
+    box.box_max[1] = upper;
+    side.side = TOBI_X_MIN;
+    box.value = side.value = 1;
+    OK(tobi_world_create(&d, NULL, &w, &err));
+    OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
+    OK(tobi_world_add_scalar(w, &s, &err));
+    OK(tobi_world_add_scalar_value(w, &box, &err));
+    OK(tobi_world_add_scalar_value(w, &side, &err));
+    OK(tobi_world_start(w, &err));
+    return w;
+}
+
+static int notes(const tobi_world *w, const char *text)
+{
+    int found = 0;
+    for (int k = 0; tobi_world_note(w, k); k++) found += strstr(tobi_world_note(w, k), text) != NULL;
+    return found;
+}
+
+/* Values that do nothing have notes; fields that are not there are refused. */
+static void idle_values_are_noted(void **state)
+{
+    static const char box[] = "'box': has no liquid in it at the start", side[] = "'x_min': has a value, but";
+    tobi_world *w = start_idle(0.4, 0, 0);
+    double c[200];
+    (void)state;
+    assert_int_equal(notes(w, box), 1);
+    assert_int_equal(notes(w, side), 1);
+    OK(tobi_world_read(w, TOBI_FLUID, "temperature", c, 200, &err));
+    REFUSED(tobi_world_read(w, TOBI_FLUID, "concentration", c, 200, &err), TOBI_NOT_FOUND,
+            "the world has no concentration; scalars are to have it");
+    tobi_world_destroy(w);
+    w = start_idle(0.2, 1e-6, 0);
+    assert_int_equal(notes(w, box) + notes(w, side), 0);
+    tobi_world_destroy(w);
+    w = start_idle(0.2, 0, 0.1);
+    assert_int_equal(notes(w, side), 0);
+    tobi_world_destroy(w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -379,6 +436,7 @@ int main(void)
         cmocka_unit_test(bodies_conduct),             cmocka_unit_test(warm_liquid_is_lighter),
         cmocka_unit_test(all_gravity_pulls_less),
         cmocka_unit_test(warm_liquid_is_thinner_by_all),
+        cmocka_unit_test(idle_values_are_noted),
         cmocka_unit_test(values_are_checked),         cmocka_unit_test(worlds_that_take_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -262,6 +262,9 @@ static void diverged_worlds_are_readable(void **state)
         def.method = methods[k];
         def.speed_limit = 10;
         tobi_world *world = make_world(&def, 1);
+        tobi_scalar_def scalar = tobi_default_scalar_def();
+        for (scalar.field = 0; scalar.field < 2; scalar.field++)
+            assert_int_equal(tobi_world_add_scalar(world, &scalar, NULL), TOBI_OK);
         fast[4] = 50;
         assert_int_equal(tobi_world_write(world, "velocity", fast, 150, NULL), TOBI_OK);
         REFUSED(tobi_world_step(world, 1e-4, NULL, &err), TOBI_DIVERGED, "the limit is 10 m/s");
