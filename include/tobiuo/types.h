@@ -518,7 +518,7 @@ typedef struct tobi_step_info {
 /* What a probe measures; members that its kind does not measure are 0. */
 typedef struct tobi_probe_info {
     double pressure;              /* Pa; of a patch the mean                                          */
-    double velocity[3];           /* m/s                                                              */
+    double velocity[3], scalar[TOBI_SCALAR_LIMIT];       /* m/s; by tobi_scalar_field                */
     double level;                 /* m, coordinate of the surface along gravity                       */
     double force[3], moment[3];   /* N, N m about the middle: of the fluid on a patch; 2-D: per m     */
     double distance, run_up;      /* m, of the water's end from the begin; its coordinate along gravity */

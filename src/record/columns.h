@@ -172,7 +172,10 @@
     P("pressure", "Pa", "Pressure at the point; 0 where there is no fluid.") \
     P("velocity_x", "m/s", "Velocity of the fluid at the point.") \
     P("velocity_y", "m/s", "") \
-    P("velocity_z", "m/s", "")
+    P("velocity_z", "m/s", "") \
+    P("temperature", "degC", \
+      "Of the fluid at the point, where `scalars` has it; 0 where there is no fluid.") \
+    P("concentration", "1", "Likewise.")
 #define LEVEL(P) \
     P("level", "m", \
       "Coordinate of the free surface on the plumb line of the point: y or z if gravity is along -y or -z.")

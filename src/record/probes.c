@@ -12,18 +12,34 @@ enum { MOST = 7 };       /* columns of a sensor */
 
 static tobi_table table_of(int kind) { return (tobi_table)(TOBI_TABLE_POINT + kind); }
 
-static int take_values(const tobi_probe_info *i, int kind, double value[MOST])
+/* Column `index` of those that a sensor has in this run, and its number in the table; NULL past the last.
+   Points have temperature and concentration where the liquids have them. */
+static const tobi_column *find_column(const tobi_run *run, int kind, int index, int *number)
+{
+    const tobi_column *column;
+    for (int v = 0; (column = tobi_run_column(table_of(kind), v)); v++) {
+        const int scalar = kind == TOBI_PROBE_POINT ? v - 4 : -1;
+        if (scalar >= 0 && !run->world->sim.scalar[scalar].given) continue;
+        if (number) *number = v;
+        if (index-- == 0) return column;
+    }
+    return NULL;
+}
+
+static int take_values(const tobi_run *run, const tobi_probe_info *i, int kind, double value[MOST])
 {
     const double all[][MOST] = {
-        [TOBI_PROBE_POINT] = { i->pressure, i->velocity[0], i->velocity[1], i->velocity[2] },
+        [TOBI_PROBE_POINT] = { i->pressure, i->velocity[0], i->velocity[1], i->velocity[2], i->scalar[0],
+                               i->scalar[1] },
         [TOBI_PROBE_LEVEL] = { i->level },
         [TOBI_PROBE_PATCH] = { i->pressure, i->force[0], i->force[1], i->force[2], i->moment[0], i->moment[1],
                                i->moment[2] },
         [TOBI_PROBE_RUN_UP] = { i->run_up, i->distance },
         [TOBI_PROBE_FLOW] = { i->flow }, [TOBI_PROBE_VOLUME] = { i->volume } };
-    int count = 0;
-    while (tobi_run_column(table_of(kind), count)) count++;
-    memcpy(value, all[kind], sizeof all[kind]);
+    double row[MOST];
+    int count = 0, number = 0;
+    memcpy(row, all[kind], sizeof row);
+    for (; find_column(run, kind, count, &number); count++) value[count] = row[number];
     return count;
 }
 
@@ -42,7 +58,7 @@ tobi_status tobi_probes_open(tobi_run *run, bool continued, tobi_error *err)
         tobi_probe_kind kind;
         const char *name = tobi_world_probe_name(run->world, k, &kind);
         const tobi_column *column;
-        for (int v = 0; (column = tobi_run_column(table_of(kind), v)); v++, count++) {
+        for (int v = 0; (column = find_column(run, kind, v, NULL)); v++, count++) {
             snprintf(names[count], NAME, "%s_%s", name, column->name);
             columns[count] = (tobi_csv_column){ names[count],
                 tobi_run_unit(column->unit, run->world->sim.def.dimension) };
@@ -131,7 +147,7 @@ tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *e
         tobi_probe_info info = { 0 };
         double value[MOST];
         if (due || def->cutoff > 0) tobi_world_measure_probe(run->world, k, &info);
-        const int count = take_values(&info, def->kind, value);
+        const int count = take_values(run, &info, def->kind, value);
         for (int v = 0; v < count && (due || def->cutoff > 0); v++)
             tobi_sensor_pass(&state[v], def->cutoff, def->order, now - before, value[v]);
         if (row) add_cells(run, count, state, due);
@@ -147,7 +163,7 @@ static int count_columns(const tobi_run *run)
 {
     int count = 0;
     for (int k = 0; k < tobi_world_probe_count(run->world); k++)
-        for (int v = 0; tobi_run_column(table_of(run->world->probes[k].def.kind), v); v++) count++;
+        for (int v = 0; find_column(run, run->world->probes[k].def.kind, v, NULL); v++) count++;
     return count;
 }
 
@@ -189,7 +205,7 @@ json_t *tobi_probes_sum_up(const tobi_run *run)
         tobi_probe_kind kind;
         const char *name = tobi_world_probe_name(run->world, k, &kind);
         const tobi_column *column;
-        for (int v = 0; (column = tobi_run_column(table_of(kind), v)); v++, s++) {
+        for (int v = 0; (column = find_column(run, kind, v, NULL)); v++, s++) {
             char key[160];
             snprintf(key, sizeof key, "%s_%s", name, column->name);
             if (s->noted)

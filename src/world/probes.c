@@ -272,7 +272,7 @@ void tobi_world_measure_probe(const tobi_world *w, int probe, tobi_probe_info *i
     default:
         memcpy(place, p->def.position, sizeof place);
         carry(b, place);
-        tobi_probe_point(s, place, &info->pressure, info->velocity);
+        tobi_probe_point(s, place, &info->pressure, info->velocity, info->scalar);
     }
 }
 

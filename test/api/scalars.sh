@@ -15,6 +15,7 @@ cat > tank.json <<'END_OF_SCENE'
     { "field": "temperature", "side": "y_min", "value": 60, "name": "floor" },
     { "field": "temperature", "body": "heater", "flux": 1e6 },
     { "field": "concentration", "box": { "min": [0, 0], "max": [0.2, 0.2] }, "value": 35 } ],
+  "probes": [ { "name": "P", "position": [0.1, 0.1] }, { "name": "L", "kind": "level", "position": [0.1, 0.1] } ],
   "output": { "interval": 0.05, "probe_interval": 0.01, "frames": true, "picture": { "field": "temperature" } } }
 END_OF_SCENE
 for method in isph dfsph wcsph eisph; do
@@ -43,6 +44,13 @@ for wall in floor heater; do
     columns+=",${wall}_temperature_flow [W per m],${wall}_temperature_passed [J per m]"
 done
 check "a table of ranges, amounts and flows" test "$(head -1 whole_isph/scalars.csv)" = "$columns"
+check "a sensor has both" test "$(head -1 whole_isph/probes.csv | cut -d, -f5-)" = \
+    "P_velocity_z [m/s],P_temperature [degC],P_concentration,L_level [m]"
+check "of the water there" $python -c "
+import csv
+last = list(csv.DictReader(open('whole_isph/probes.csv')))[-1]
+raise SystemExit(not (20 <= float(last['P_temperature [degC]']) < 30 and 34 < float(last['P_concentration']) < 35.5))"
+check "the same after a resume" cmp whole_isph/probes.csv parts_isph/probes.csv
 check "fields of the particles" grep -q 'Name="temperature"' whole_isph/fluid/fluid_000002.vtu
 check "resolved.json has the values" grep -q '"flux": 1000000' whole_isph/resolved.json
 expect 0 "" run whole_isph/resolved.json --out again --quiet --threads 1

@@ -11,9 +11,9 @@
 #define RADIUS 3.0          /* of the fit, spacings */
 #define DRY 0.1             /* share of the kernel, a place with less before it is dry */
 #define ON_WALL 0.5         /* a point nearer to a surface than this sits on it, spacings */
-enum { BASIS = 4, VALUES = 4 };
+enum { BASIS = 4, SCALARS = 4, VALUES = SCALARS + TOBI_SCALAR_LIMIT };
 
-/* Normal equations of the fit: basis 1, x, y, z in radii; right sides pressure and velocity. */
+/* Normal equations of the fit: basis 1, x, y, z in radii; right sides pressure, velocity and scalars. */
 typedef struct fit {
     const tobi_system *s;
     double radius, matrix[BASIS][BASIS], right[BASIS][VALUES];
@@ -28,7 +28,9 @@ static void add_to_fit(void *user, int64_t i, const double d[3])
     double w = (1 - q)*(1 - q)*(1 - q)*(1 - q)*(1 + 4*q);
     const double basis[BASIS] = {1, d[0]/f->radius, d[1]/f->radius, d[2]/f->radius};
     const tobi_float4 *v = &f->s->particles.velocity[i];
-    const double value[VALUES] = {sph_fields_of(&f->s->particles)->pressure[i], v->x, v->y, v->z};
+    const sph_fields *own = sph_fields_of(&f->s->particles);
+    const double value[VALUES] = {own->pressure[i], v->x, v->y, v->z, own->scalars ? own->scalars[i].x : 0,
+                                  own->scalars ? own->scalars[i].y : 0};
     f->count++;
     for (int a = 0; a < BASIS; a++) {
         for (int b = 0; b < BASIS; b++) f->matrix[a][b] += w*basis[a]*basis[b];
@@ -221,7 +223,8 @@ static void find_local(const tobi_system *s, const double x[3], double local[3])
     for (int a = 0; a < 3; a++) local[a] = a < s->box.dimension ? x[a] - s->box.lower[a] : 0;
 }
 
-int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, double velocity[3])
+int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, double velocity[3],
+                     double scalar[TOBI_SCALAR_LIMIT])
 {
     double local[3], value[VALUES];
     membrane wall;
@@ -229,6 +232,7 @@ int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, 
     const int count = fit_values(s, local, value);
     *pressure = value[0];
     memcpy(velocity, value + 1, 3*sizeof *velocity);
+    memcpy(scalar, value + SCALARS, TOBI_SCALAR_LIMIT*sizeof *scalar);
     if (count > 0 && find_surface(s, local, &wall)) *pressure = measure_wall(&wall);
     if (count > 0) *pressure += sph_hydrostatic(s, local);
     return count;

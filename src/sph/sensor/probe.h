@@ -9,7 +9,8 @@
    spacing): the pressure is what the fluid exerts there per area, mean over a disc of one spacing's
    radius, the same sums that make up the forces on walls and bodies. Positions may have moved since
    the last sort by less than a spacing. Returns how many particles were used. */
-int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, double velocity[3]);
+int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, double velocity[3],
+                     double scalar[TOBI_SCALAR_LIMIT]);
 
 /* Pressure at a place, Pa, without the mean over a disc; on a side or a body, *normal becomes its
    direction out
