@@ -349,6 +349,22 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
     return TOBI_OK;
 }
 
+int64_t tobi_body_bytes(const tobi_body *b)
+{
+    const tobi_quadrature *q = &b->surface;
+    const size_t place = sizeof *b->vertex;
+    const size_t vertices = 1 + (b->vertex != NULL) + (b->next != NULL) + (b->vertex_velocity != NULL) +
+                            (b->vertex_before != NULL) + (b->rest_vertex != NULL),
+                 piece = sizeof *q->triangle + (1 + (q->b != NULL))*place + sizeof *q->fraction + 3*place +
+                         sizeof *b->piece_area + sizeof *b->point_of,
+                 point = 4*place + sizeof *b->wet + sizeof *b->covered + sizeof *b->outermost +
+                         sizeof *b->area + sizeof *b->weight;
+    return b->mesh.vertex_count*(int64_t)(vertices*place) +
+           b->mesh.triangle_count*(int64_t)sizeof *b->mesh.triangles + q->count*(int64_t)piece +
+           b->point_count*(int64_t)point + b->particle_count*(int64_t)(2*place) + tobi_bvh_bytes(b->bvh) +
+           tobi_bvh_bytes(b->rest_bvh);
+}
+
 void tobi_body_free(tobi_body *b)
 {
     tobi_mesh_free(&b->mesh);

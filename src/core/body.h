@@ -131,6 +131,8 @@ typedef struct tobi_body {
 tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_box *box,
                              double point_spacing, tobi_error *err);
 void tobi_body_free(tobi_body *b);
+/* Bytes of its mesh, surface and particles. */
+int64_t tobi_body_bytes(const tobi_body *b);
 /* 1 if any of the bodies is free or controlled. */
 int tobi_body_any_free(const tobi_body *bodies, int count);
 /* 1 if any of them changes its shape. */

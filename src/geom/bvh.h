@@ -24,6 +24,8 @@ tobi_status tobi_bvh_build(int64_t vertex_count, const double (*vertices)[3],
                            int64_t triangle_count, const int32_t (*triangles)[3],
                            tobi_bvh **out, tobi_error *err);
 void tobi_bvh_free(tobi_bvh *bvh);
+/* Bytes that it takes; 0 of NULL. */
+int64_t tobi_bvh_bytes(const tobi_bvh *bvh);
 
 /* Takes new positions of the same vertices. The boxes and pseudonormals follow; the shape of the
    tree stays, so queries slow down when the shape changes beyond recognition, but stay right. */

@@ -225,6 +225,18 @@ static int allocate_bvh(tobi_bvh *b)
            b->corner_angle;
 }
 
+int64_t tobi_bvh_bytes(const tobi_bvh *b)
+{
+    if (!b) return 0;
+    const size_t node = sizeof *b->nodes + sizeof *b->node_box,
+                 triangle = sizeof *b->corners + sizeof *b->leaf_triangle + sizeof *b->triangles +
+                            sizeof *b->opposite + 3*sizeof *b->corner_list + sizeof *b->face_normal +
+                            sizeof *b->edge_normal + sizeof *b->corner_angle,
+                 vertex = sizeof *b->corner_start + sizeof *b->vertex_normal;
+    return b->node_count*(int64_t)node + b->triangle_count*(int64_t)triangle +
+           b->vertex_count*(int64_t)vertex;
+}
+
 void tobi_bvh_free(tobi_bvh *b)
 {
     if (!b) return;

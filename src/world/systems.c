@@ -205,6 +205,14 @@ static int64_t estimate_system(const tobi_world *w, const tobi_system *s, int64_
            (s->method->estimate ? s->method->estimate(s, &plan) : 0);
 }
 
+/* Bytes of all. */
+static int64_t count_bodies(const tobi_world *w)
+{
+    int64_t bytes = 0;
+    for (int k = 0; k < w->sim.body_count; k++) bytes += tobi_body_bytes(&w->sim.bodies[k]);
+    return bytes;
+}
+
 tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles,
                                 int64_t *bytes, tobi_error *err)
 {
@@ -223,7 +231,7 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
         *bytes += estimate_system(w, s, count);
     }
     for (int k = 0; k < w->sim.body_count; k++) *body_particles += w->sim.bodies[k].particle_count;
-    *bytes += *body_particles*48;
+    *bytes += count_bodies(w);
     return w->started ? TOBI_OK : tobi_world_note_time_step(w, err);
 }
 
@@ -345,6 +353,7 @@ static tobi_account account(const tobi_world *w)
         tobi_account_add(&a, "neighbour lists", s->cells.list_bytes);
         if (s->method->account && s->state) s->method->account(s, &a);
     }
+    if (w && w->sim.body_count > 0) tobi_account_add(&a, "bodies", count_bodies(w));
     return a;
 }
 

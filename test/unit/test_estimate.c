@@ -118,11 +118,35 @@ static void choices_of_isph_count(void **state)
     assert_true(bytes[1] > bytes[0] && bytes[2] > bytes[0]);
 }
 
+/* The mesh of a body counts: a ball of some 20 000 triangles takes more than its particles. */
+static void meshes_count(void **state)
+{
+    (void)state;
+    int64_t bytes[2], n;
+    for (int k = 0; k < 2; k++) {
+        tobi_world *w = open_tank("dfsph", 3, 0.05);
+        tobi_body_def ball = tobi_default_body_def();
+        ball.name = "ball";
+        ball.sphere_radius = 0.1;
+        ball.sphere_centre[0] = ball.sphere_centre[1] = 0.5;
+        ball.sphere_centre[2] = 0.8;
+        ball.spacing = 0.003;
+        if (k) OK(tobi_world_add_body(w, &ball, &err));
+        OK(tobi_world_estimate(w, &n, &n, &bytes[k], &err));
+        if (k) {
+            const double due = measure(w);
+            assert_true(fabs((double)bytes[k]/due - 1) < 0.1);
+        }
+        tobi_world_destroy(w);
+    }
+    if (bytes[1] - bytes[0] < 10000000) fail_msg("%lld bytes", (long long)(bytes[1] - bytes[0]));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_estimate_is_what_a_run_takes),
-        cmocka_unit_test(choices_of_isph_count),
+        cmocka_unit_test(choices_of_isph_count), cmocka_unit_test(meshes_count),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
