@@ -26,7 +26,8 @@ static const char text[] =
     "  \"inlets\": [ { \"name\": \"a\", " PATCH ", { \"name\": \"b\", " PATCH ","
     "    { \"name\": \"b\", " PATCH " ],"
     "  \"outlets\": [ { \"name\": \"a\", " PATCH ", { \"name\": \"a\", " PATCH " ],"
-    "  \"output\": { \"views\": [ { \"name\": \"frame\" }, { \"name\": \"v\" },"
+    "  \"output\": { \"views\": [ { \"name\": \"frame\" },"
+    "    { \"name\": \"v\", \"picture\": { \"field\": \"temperature\" } },"
     "    { \"name\": \"v\", \"picture\": { \"field_of\": \"solids\" } } ] } }";
 
 static const char *const expected[] = {
@@ -42,6 +43,7 @@ static const char *const expected[] = {
     "lines[1].rests: is of a catenary",
     "lines[2].body: \"raft\" is no body of the scene",
     "output.views[0].name: is \"frame\", the name of the output's own pictures",
+    "output.views[1].picture.field: is \"temperature\", and the scene has none; scalars are to have it",
     "output.views[2].picture.field_of: is \"solids\", but the scene has none",
     "output.views[2].name: \"v\" is the name of views[1] too",
 };
