@@ -5,9 +5,10 @@ usage: check_house.py [ROOT]
 
 Files of at most 600 lines, functions of at most 80, lines of at most 110 columns, no tabs, no file
 named utils, common or misc, no path of somebody's machine in the sources, no OpenMP in the program outside
-src/exec. Pages: README of at most 120 lines, prose of at most 100 columns (not code, tables, equations), no
-passage about a program that was not kept; each decision has a number of its own and a status. Theory has
-sentences of at most 25 words; a formula counts as one word, a colon ends a sentence.
+src/exec. Pages: README of at most 120 lines, prose of at most 100 columns (not code, tables, equations),
+Japanese of at most 120 bytes, no passage about a program that was not kept; each decision has a number of
+its own and a status. Theory has sentences of at most 25 words; a formula counts as one word, a colon ends
+a sentence.
 """
 import ast
 import pathlib
@@ -30,6 +31,7 @@ OPENMP = re.compile(r"pragma\s+omp|_Pragma\s*\(\s*\"\s*omp|\bomp_|\bomp\.h")
 OPENMP_FOLDERS = ("include", "src", "app", "bench")     # tests may call the library from threads of their own
 README_LINES = 120
 PROSE_COLUMNS = 100
+JAPANESE_BYTES = 120   # 40 characters, as wide as 80 columns
 NOT_PROSE = re.compile(r"\s*\||<!--")      # tables, comments
 NOT_KEPT = re.compile(r"\b(programs?|scenes?|runs?)\b.*\bnot kept\b", re.IGNORECASE)
 SENTENCE_WORDS = 25
@@ -151,6 +153,8 @@ def check_page(root, path, errors):
     if where.name.startswith("README.") and len(where.parts) == 1 and text.count("\n") > README_LINES:
         errors.append(f"{where}:{README_LINES}: {text.count(chr(10))} lines, at most {README_LINES}")
     for number, line in prose_lines(text):
+        if where.name.endswith(".ja.md") and len(line.encode()) > JAPANESE_BYTES:
+            errors.append(f"{where}:{number}: {len(line.encode())} bytes of Japanese, at most {JAPANESE_BYTES}")
         if len(line) > PROSE_COLUMNS:
             errors.append(f"{where}:{number}: {len(line)} columns of prose, at most {PROSE_COLUMNS}")
         if NOT_KEPT.search(line):

@@ -40,6 +40,7 @@ CASES = [
     ("check_house.py", "README.md", "line\n"*121, "README.md:120: 121 lines, at most 120"),
     ("check_house.py", "README.md", "Line.\n"*120, None),
     ("check_house.py", "docs/a.md", "word "*21 + "\n", "docs/a.md:1: 105 columns of prose"),
+    ("check_house.py", "docs/a.ja.md", "\u6c34"*41 + "\n", "docs/a.ja.md:1: 123 bytes of Japanese, at most 120"),
     ("check_house.py", "scenes/x/README.md", "- a\n  " + "word "*21 + "\n", "README.md:2: 107 columns of prose"),
     ("check_house.py", "docs/a.md", "| " + "word "*30 + "|\n```\n" + "word "*30 + "\n```\n$$" + "x "*80 + "$$\n\n    " +
      "word "*30 + "\n", None),
