@@ -46,7 +46,7 @@ typedef struct tobi_scalar_info {
 
 /* A side or body with a value or a flux. */
 typedef struct tobi_scalar_flow {
-    int    field;                  /* tobi_scalar_field                                                */
+    const char *field, *unit;      /* as in tobi_scalar_info                                           */
     double flow;                   /* amount/s into the liquid, last step, 2-D: per m; 0 after a load      */
 } tobi_scalar_flow;
 

@@ -150,8 +150,7 @@ class World:
         """What comes into the liquid through each side and body with a value or flux: WALL_temperature ..."""
         names = _list_names(lib.tobi_world_scalar_flow, self._world, ffi.NULL)
         flows = [self._of("tobi_scalar_flow", lib.tobi_world_scalar_flow, k) for k in range(len(names))]
-        fields = ("temperature", "concentration")
-        return {f"{name}_{fields[flow['field']]}": flow["flow"] for name, flow in zip(names, flows)}
+        return {f"{name}_{flow['field']}": flow["flow"] for name, flow in zip(names, flows)}
 
     @property
     def solids(self):

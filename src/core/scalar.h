@@ -19,7 +19,7 @@ enum { TOBI_SCALAR_AT_BOX, TOBI_SCALAR_AT_FLUID, TOBI_SCALAR_AT_INLET, TOBI_SCAL
 /* What a wall does to a scalar in the liquid, without mass and capacity. */
 typedef struct tobi_scalar_wall {
     float fixed;                    /* 1: it has a value, 0: a flux                                    */
-    float value, flux;              /* unit; kg unit/(m2 s) into the liquid                            */
+    float value, flux;              /* unit, from that at the start; kg unit/(m2 s) into the liquid    */
     float resistance;               /* m2 s/kg, of the transfer; 0: liquid on it is as the wall        */
 } tobi_scalar_wall;
 

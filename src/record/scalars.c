@@ -14,36 +14,34 @@ enum { OF_ALL = sizeof of_all/sizeof *of_all, OF_FLOW = sizeof of_flow/sizeof *o
 
 typedef struct header { tobi_csv_column *columns; char (*names)[NAME]; int count, dimension; } header;
 
-/* kg where the amount has no heat capacity. */
-static const char *find_unit(const char *unit, int field)
+/* Of a column of a scalar whose values are in `own`: amounts are in kg where it has no heat capacity. */
+static const char *find_unit(const char *unit, const char *own)
 {
-    if (field == TOBI_TEMPERATURE) return unit;
-    return strcmp(unit, "J") == 0 ? "kg" : strcmp(unit, "W") == 0 ? "kg/s" : unit;
+    if (strcmp(unit, "degC") == 0) return own;
+    if (strcmp(own, "degC") == 0) return unit;
+    return strcmp(unit, "W") == 0 ? "kg/s" : "kg";
 }
 
-static void add(header *h, const char *before, const char *field, const tobi_csv_column *column,
-                const char *unit)
+/* wall: its name, "" of all liquid. */
+static void add(header *h, const char *wall, const char *field, const tobi_csv_column *column,
+                const char *own)
 {
     char *name = h->names[h->count];
-    snprintf(name, NAME, "%s%s%s_%s", before, *before ? "_" : "", field, column->name);
-    h->columns[h->count++] = (tobi_csv_column){ name, tobi_run_unit(unit, h->dimension) };
+    snprintf(name, NAME, "%s%s%s_%s", wall, *wall ? "_" : "", field, column->name);
+    h->columns[h->count++] = (tobi_csv_column){ name, tobi_run_unit(find_unit(column->unit, own),
+                                                                    h->dimension) };
 }
 
 static void list_columns(const tobi_world *w, header *h)
 {
-    static const char *const fields[] = { "temperature", "concentration" };
     tobi_scalar_info i;
     tobi_scalar_flow f;
     const char *name;
     h->columns[h->count++] = (tobi_csv_column){ "time", "s" };
     for (int k = 0; tobi_world_scalar(w, k, &i); k++)
-        for (int v = 0; v < OF_ALL; v++)
-            add(h, "", i.field, &of_all[v], strcmp(of_all[v].unit, "degC") == 0 ? i.unit
-                : find_unit(of_all[v].unit, strcmp(i.field, fields[0]) == 0 ? TOBI_TEMPERATURE
-                                                                           : TOBI_CONCENTRATION));
+        for (int v = 0; v < OF_ALL; v++) add(h, "", i.field, &of_all[v], i.unit);
     for (int k = 0; (name = tobi_world_scalar_flow(w, k, &f)); k++)
-        for (int v = 0; v < OF_FLOW; v++) add(h, name, fields[f.field], &of_flow[v],
-                                              find_unit(of_flow[v].unit, f.field));
+        for (int v = 0; v < OF_FLOW; v++) add(h, name, f.field, &of_flow[v], f.unit);
 }
 
 tobi_status tobi_scalars_open(tobi_run *run, bool continued, tobi_error *err)

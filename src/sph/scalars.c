@@ -37,10 +37,11 @@ tobi_scalar_lift sph_scalars_lift(const tobi_system *s)
 
 void sph_scalars_add_lift(const tobi_system *s, int64_t i, double g[3])
 {
+    const tobi_double2 *all = sph_fields_of(&s->particles)->scalars;
+    if (!all) return;
     const tobi_scalar_lift lift = sph_scalars_lift(s);
+    const tobi_double2 own = all[i];
     float more[3] = { 0, 0, 0 };
-    if (!lift.acts) return;
-    const tobi_double2 own = sph_fields_of(&s->particles)->scalars[i];
     double beside[3];
     tobi_scalar_add_lift(&lift, own, more);
     if (s->sim->acceleration.acts) {
@@ -48,19 +49,6 @@ void sph_scalars_add_lift(const tobi_system *s, int64_t i, double g[3])
         tobi_scalar_add_share(&lift, own, beside, more);
     }
     for (int a = 0; a < 3; a++) g[a] += more[a];
-}
-
-/* Of side or body `number`; the last that names it counts. Nothing passes where none does. */
-static tobi_scalar_wall find_wall(const tobi_system *s, int field, int kind, int number)
-{
-    tobi_scalar_wall wall = { 0, 0, 0, 0 };
-    for (int k = 0; k < s->sim->scalar_place_count; k++) {
-        const tobi_scalar_place *p = &s->sim->scalar_place[k];
-        if (p->field != field || p->kind != kind || p->number != number) continue;
-        wall = p->wall;
-        if (p->wall.fixed != 0) wall.value = (float)(p->value - s->sim->scalar[field].value);
-    }
-    return wall;
 }
 
 /* 1 over 2 d sum sigma of the layers of a lattice beside a wall: the share of a flux that they would take. */
@@ -88,9 +76,6 @@ void sph_scalars_bind(const tobi_system *s, sph_view *v)
         v->scalar.diffusivity[k] = (float)c->diffusivity;
         v->scalar.thinning[k] = (float)c->thinning;
         v->scalar.per_eddy[k] = c->given ? (float)(1/c->turbulent_number) : 0;
-        for (int p = 0; p < v->plane_count; p++)
-            v->scalar.plane[p][k] = find_wall(s, k, TOBI_SCALAR_AT_SIDE,
-                                              2*v->plane[p].axis + (v->plane[p].sign < 0));
     }
 }
 
@@ -119,116 +104,67 @@ static float find_most_eddy(const tobi_system *s)
     return (float)most;
 }
 
-typedef struct walls {
-    tobi_system *s;
+/* A side, `plane` of the view, or a body, and what of it counts. */
+typedef struct giver {
+    const tobi_system *s;
     const sph_view *v;
-    tobi_scalar_wall wall[TOBI_SCALAR_LIMIT];      /* of the plane `number`                     */
-    int number;
-} walls;
+    const tobi_scalar_place *place;
+    int plane;
+} giver;
 
-static float find_diffusivity(const sph_view *v, int k, int64_t i)
+/* What particle i gets of a wall at the distance `at`, whose integral of the kernel is sigma; kg unit/s. */
+static double give(const giver *g, int64_t i, float at, float sigma)
 {
-    return v->scalar.diffusivity[k] + v->scalar.per_eddy[k]*v->scalar_now[i].z;
+    const sph_view *v = g->v;
+    const tobi_float4 now = v->scalar_now[i];
+    const int k = g->place->field;
+    if (sph_driven(v, i)) return 0;
+    const float rate = sph_scalar_wall_rate(v, &g->place->wall,
+                                            v->scalar.diffusivity[k] + v->scalar.per_eddy[k]*now.z, sigma, at,
+                                            (&now.x)[k], now.w);
+    (&v->scalar_change[i].x)[k] += v->scalar.dt*rate;
+    return g->s->smoothing.volume*now.w*rate;
 }
 
-/* What a body gives particle i, unit/s. */
-static float find_body_rate(const sph_view *v, const tobi_scalar_wall *w, int k, const tobi_boundary_link *l)
-{
-    const double *g = l->gradient;
-    const float sigma = (float)sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]), least = 0.25f*v->spacing;
-    return sph_scalar_wall_rate(v, w, find_diffusivity(v, k, l->particle), sigma,
-                                l->distance > least ? l->distance : least, (&v->scalar_now[l->particle].x)[k],
-                                v->scalar_now[l->particle].w);
-}
+static float keep_off(const sph_view *v, float at) { return at > 0.25f*v->spacing ? at : 0.25f*v->spacing; }
 
-static int has_wall(const tobi_scalar_wall wall[TOBI_SCALAR_LIMIT])
+static void give_from_plane(const void *view, int64_t begin, int64_t end, double *t)
 {
-    int has = 0;
-    for (int k = 0; k < TOBI_SCALAR_LIMIT; k++) has |= wall[k].fixed != 0 || wall[k].flux != 0;
-    return has;
-}
-
-static void find_walls(const tobi_system *s, int kind, int number, tobi_scalar_wall wall[TOBI_SCALAR_LIMIT])
-{
-    for (int k = 0; k < TOBI_SCALAR_LIMIT; k++) wall[k] = find_wall(s, k, kind, number);
-}
-
-/* Adds what bodies give. */
-static void add_bodies(const void *view, int64_t begin, int64_t end)
-{
-    const walls *w = view;
-    const tobi_system *s = w->s;
-    const tobi_boundary_links *n = &sph_of(s)->links;
-    SPH_FOR_NEAR_PARTICLES(s, k, i, e) {
-        const tobi_boundary_link *l = &n->link[e - n->entry];
-        tobi_scalar_wall wall[TOBI_SCALAR_LIMIT];
-        if (sph_driven(w->v, i)) continue;
-        find_walls(s, TOBI_SCALAR_AT_BODY, l->body, wall);
-        for (int c = 0; has_wall(wall) && c < TOBI_SCALAR_LIMIT; c++)
-            (&w->v->scalar_change[i].x)[c] += w->v->scalar.dt*find_body_rate(w->v, &wall[c], c, l);
-    }
-}
-
-static double find_mass(const tobi_system *s, int64_t i)
-{
-    return s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
-}
-
-/* Over the entries of a body: kg unit/s of each. */
-static void sum_body(const void *view, int64_t begin, int64_t end, double *t)
-{
-    const walls *w = view;
-    const tobi_boundary_links *n = &sph_of(w->s)->links;
-    for (int64_t k = begin; k < end; k++) {
-        const tobi_boundary_link *l = &n->link[k];
-        tobi_scalar_wall wall[TOBI_SCALAR_LIMIT];
-        if (sph_driven(w->v, l->particle)) continue;
-        find_walls(w->s, TOBI_SCALAR_AT_BODY, l->body, wall);
-        for (int c = 0; has_wall(wall) && c < TOBI_SCALAR_LIMIT; c++)
-            t[c] += find_mass(w->s, l->particle)*find_body_rate(w->v, &wall[c], c, l);
-    }
-}
-
-/* Over particles: the same of a plane. */
-static void sum_plane(const void *view, int64_t begin, int64_t end, double *t)
-{
-    const walls *w = view;
-    const sph_view *v = w->v;
+    const giver *g = view;
     for (int64_t i = begin; i < end; i++) {
-        const float at = sph_plane_distance(v, w->number, i), least = 0.25f*v->spacing,
-                    s = at > least ? at : least;
-        if (at >= v->h || sph_driven(v, i)) continue;
-        for (int k = 0; k < TOBI_SCALAR_LIMIT; k++)
-            t[k] += find_mass(w->s, i)*
-                    sph_scalar_wall_rate(v, &w->wall[k], find_diffusivity(v, k, i),
-                                         sph_plane_value(v, v->table->sigma, s), s, (&v->scalar_now[i].x)[k],
-                                         v->scalar_now[i].w);
+        const float at = sph_plane_distance(g->v, g->plane, i), s = keep_off(g->v, at);
+        if (at < g->v->h) t[0] += give(g, i, s, sph_plane_value(g->v, g->v->table->sigma, s));
     }
 }
 
-static void keep_flow(tobi_system *s, int kind, int number, const double *t)
+/* Over the entries of a body: each particle has one. */
+static void give_from_body(const void *view, int64_t begin, int64_t end, double *t)
 {
+    const giver *g = view;
+    for (int64_t k = begin; k < end; k++) {
+        const tobi_boundary_link *l = &sph_of(g->s)->links.link[k];
+        const double *n = l->gradient, sigma = sqrt(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
+        t[0] += give(g, l->particle, keep_off(g->v, l->distance), (float)sigma);
+    }
+}
+
+/* One wall after the other: a particle may see several. */
+static void give_from_walls(tobi_system *s, const sph_view *v)
+{
+    const int64_t *first = sph_of(s)->links.first;
     for (int k = 0; k < s->sim->scalar_place_count; k++) {
         tobi_scalar_place *p = &s->sim->scalar_place[k];
-        if (p->kind == kind && p->number == number) p->flow = s->sim->scalar[p->field].capacity*t[p->field];
+        giver g = { s, v, p, 0 };
+        double t[TOBI_TOTALS] = { 0 };
+        while (p->kind == TOBI_SCALAR_AT_SIDE && p->number != 2*v->plane[g.plane].axis +
+                                                              (v->plane[g.plane].sign < 0)) g.plane++;
+        if (p->kind == TOBI_SCALAR_AT_SIDE)
+            tobi_launch(&s->sim->exec, TOBI_HOST(give_from_plane, 1, 0), &g, 0, s->particles.count, t);
+        if (p->kind == TOBI_SCALAR_AT_BODY)
+            tobi_launch(&s->sim->exec, TOBI_HOST(give_from_body, 1, 0), &g, first[p->number],
+                        first[p->number + 1], t);
+        p->flow = s->sim->scalar[p->field].capacity*t[0];
     }
-}
-
-static void measure_flows(tobi_system *s, const sph_view *v)
-{
-    walls w = { s, v, { { 0, 0, 0, 0 } }, 0 };
-    double t[TOBI_TOTALS];
-    for (int p = 0; p < v->plane_count; p++) {
-        for (int k = 0; k < TOBI_SCALAR_LIMIT; k++) w.wall[k] = v->scalar.plane[p][k];
-        w.number = p;
-        if (!has_wall(w.wall)) continue;
-        tobi_launch(&s->sim->exec, TOBI_HOST(sum_plane, 2, 0), &w, 0, s->particles.count, t);
-        keep_flow(s, TOBI_SCALAR_AT_SIDE, 2*v->plane[p].axis + (v->plane[p].sign < 0), t);
-    }
-    if (s->sim->body_count == 0) return;
-    tobi_boundary_sum(s, TOBI_HOST(sum_body, 2, 0), &w, 0);
-    for (int k = 0; k < s->sim->body_count; k++)
-        keep_flow(s, TOBI_SCALAR_AT_BODY, k, sph_of(s)->links.total[k]);
 }
 
 void sph_scalars_spread(tobi_system *s, sph_view *v, const sph_kernels *k)
@@ -245,9 +181,7 @@ void sph_scalars_spread(tobi_system *s, sph_view *v, const sph_kernels *k)
         v->scalar.gain[c] = added > taken ? (float)(taken/added) : 1;
         v->scalar.loss[c] = taken > added ? (float)(added/taken) : 1;
     }
-    const walls w = { s, v, { { 0, 0, 0, 0 } }, 0 };
-    if (s->sim->body_count > 0) tobi_loop(s->sim->exec.threads, sph_of(s)->links.count, 0, add_bodies, &w);
-    measure_flows(s, v);
+    give_from_walls(s, v);
     tobi_launch(&s->sim->exec, k->sph_scalar_take, v, 0, s->particles.count, t);
     s->sim->scalar_power = t[0];
 }

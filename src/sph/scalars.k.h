@@ -1,10 +1,7 @@
-/* Temperature and concentration: diffusion between particles and at walls, and what a shift of positions
+/* Temperature and concentration: diffusion between particles, what walls give, and what a shift of positions
    changes. Both at once; equation numbers: docs/theory/scalars.md. */
 #pragma once
 #include "sph/sph.k.h"
-
-/* Below it neighbours lie on a line, and there is no gradient. */
-#define SPH_SCALAR_FLAT 1e-3f
 
 /* Differences from the values at the start are exact enough in single precision. */
 TOBI_FN void sph_scalar_look(const sph_view *v, int64_t i, double *totals)
@@ -21,7 +18,7 @@ TOBI_FN void sph_scalar_look(const sph_view *v, int64_t i, double *totals)
 
 typedef struct sph_scalar_spread_acc {
     lane own[4], spread[2], low[2], high[2], slope[2][3];
-    lane xx, yy, zz, xy, yz, zx;
+    sph_moments m;
 } sph_scalar_spread_acc;
 
 TOBI_FN void sph_scalar_spread_start(const sph_view *v, int64_t i, sph_scalar_spread_acc *a)
@@ -33,7 +30,7 @@ TOBI_FN void sph_scalar_spread_start(const sph_view *v, int64_t i, sph_scalar_sp
         a->spread[k] = a->low[k] = a->high[k] = lane_set(0);
         for (int b = 0; b < 3; b++) a->slope[k][b] = lane_set(0);
     }
-    a->xx = a->yy = a->zz = a->xy = a->yz = a->zx = lane_set(0);
+    sph_moments_clear(&a->m);
 }
 
 /* Pairs of different density have its harmonic mean: what one gives the other takes. */
@@ -54,8 +51,7 @@ TOBI_FN void sph_scalar_spread_pair(const sph_view *v, int64_t i, const tobi_nei
         a->slope[k][1] -= f*change*n->dy;
         a->slope[k][2] -= f*change*n->dz;
     }
-    a->xx += f*n->dx*n->dx; a->yy += f*n->dy*n->dy; a->zz += f*n->dz*n->dz;
-    a->xy += f*n->dx*n->dy; a->yz += f*n->dy*n->dz; a->zx += f*n->dz*n->dx;
+    sph_moments_add(&a->m, f, n);
 }
 
 /* Eq. (3), unit/s, of a wall at the distance s, whose integral of the kernel is sigma, on a particle with c
@@ -65,25 +61,6 @@ TOBI_FN float sph_scalar_wall_rate(const sph_view *v, const tobi_scalar_wall *w,
 {
     const float conducted = w->fixed*diffusivity*(w->value - c)/(w->resistance*rho*diffusivity + s);
     return 2*v->scalar.lattice*sigma*(w->flux/rho + conducted);
-}
-
-/* The gradients: M x = slope, M of the neighbours. 0 where they do not span the space. */
-TOBI_FN int sph_scalar_gradient(const sph_view *v, const sph_scalar_spread_acc *a, float x[2][3])
-{
-    const float m = v->slope, xx = m*lane_sum(a->xx), yy = m*lane_sum(a->yy), xy = m*lane_sum(a->xy),
-                yz = m*lane_sum(a->yz), zx = m*lane_sum(a->zx),
-                zz = v->dimension == 3 ? m*lane_sum(a->zz) : 1;
-    const float px = yy*zz - yz*yz, py = zx*yz - xy*zz, pz = xy*yz - yy*zx, det = xx*px + xy*py + zx*pz;
-    const float qy = xx*zz - zx*zx, qz = xy*zx - xx*yz, rz = xx*yy - xy*xy;
-    if (!(det > SPH_SCALAR_FLAT)) return 0;
-    for (int k = 0; k < 2; k++) {
-        const float gx = m*lane_sum(a->slope[k][0])/det, gy = m*lane_sum(a->slope[k][1])/det,
-                    gz = m*lane_sum(a->slope[k][2])/det;
-        x[k][0] = px*gx + py*gy + pz*gz;
-        x[k][1] = py*gx + qy*gy + qz*gz;
-        x[k][2] = pz*gx + qz*gy + rz*gz;
-    }
-    return 1;
 }
 
 /* Least and most of the lanes and 0. */
@@ -97,32 +74,24 @@ TOBI_FN float sph_scalar_limit(lane low, lane high, float x)
     return x < least ? least : x > most ? most : x;
 }
 
-/* Eq. (1), (4) into scalar_change. totals: what the shift adds to each, by mass; what it takes. */
+/* Eq. (1), (4) into scalar_change, without walls. totals: what the shift adds to each, by mass; what it
+   takes. */
 TOBI_FN void sph_scalar_spread_finish(const sph_view *v, int64_t i, sph_scalar_spread_acc *a, double *totals)
 {
-    const tobi_float4 now = v->scalar_now[i], shift = v->accel[i];
-    const float own[2] = {now.x, now.y}, way = v->scalar.way*v->scalar.way, mass = v->volume*now.w;
-    float gradient[2][3], rate[2], moved[2] = {0, 0};
-    const tobi_float4 none = {0, 0, 0, 0};
-    if (sph_driven(v, i)) {
-        v->scalar_change[i] = none;
-        return;
-    }
-    for (int k = 0; k < 2; k++) rate[k] = 2*v->slope*lane_sum(a->spread[k]);
-    for (int p = 0; p < v->plane_count; p++) {
-        const float at = sph_plane_distance(v, p, i), s = at > 0.25f*v->spacing ? at : 0.25f*v->spacing;
-        if (at >= v->h) continue;
-        for (int k = 0; k < 2; k++)
-            rate[k] += sph_scalar_wall_rate(v, &v->scalar.plane[p][k],
-                                            v->scalar.diffusivity[k] + v->scalar.per_eddy[k]*now.z,
-                                            sph_plane_value(v, v->table->sigma, s), s, own[k], now.w);
-    }
-    if (sph_scalar_gradient(v, a, gradient))
-        for (int k = 0; k < 2; k++)
-            moved[k] = sph_scalar_limit(a->low[k], a->high[k],
-                                        way*(shift.x*gradient[k][0] + shift.y*gradient[k][1] +
-                                             shift.z*gradient[k][2]));
+    const tobi_float4 shift = v->accel[i], none = {0, 0, 0, 0};
+    const float way = v->scalar.way*v->scalar.way, mass = v->volume*v->scalar_now[i].w;
+    float rate[2], moved[2] = {0, 0};
+    sph_matrix m = sph_moments_sum(&a->m, v->slope);
+    if (v->dimension == 2) m.zz = 1;
+    v->scalar_change[i] = none;
+    if (sph_driven(v, i)) return;
+    const int spans = sph_invert(&m, &m);
     for (int k = 0; k < 2; k++) {
+        const tobi_float4 slope = lane_sum4(a->slope[k][0], a->slope[k][1], a->slope[k][2], lane_set(0)),
+                          g = sph_matrix_times(&m, slope);
+        rate[k] = 2*v->slope*lane_sum(a->spread[k]);
+        if (spans) moved[k] = sph_scalar_limit(a->low[k], a->high[k],
+                                               way*v->slope*(shift.x*g.x + shift.y*g.y + shift.z*g.z));
         totals[k] += moved[k] > 0 ? (double)mass*moved[k] : 0;
         totals[2 + k] -= moved[k] < 0 ? (double)mass*moved[k] : 0;
     }
@@ -130,8 +99,7 @@ TOBI_FN void sph_scalar_spread_finish(const sph_view *v, int64_t i, sph_scalar_s
     v->scalar_change[i] = out;
 }
 
-/* Eq. (5): the shift neither makes nor takes any.
-   totals: W, what the change of weight gives. */
+/* Eq. (5): the shift neither makes nor takes any. totals: W, what the change of weight gives. */
 TOBI_FN void sph_scalar_take(const sph_view *v, int64_t i, double *totals)
 {
     const tobi_float4 c = v->scalar_change[i], u = v->velocity[i];

@@ -21,7 +21,6 @@ typedef struct sph_scalar_constants {
     float diffusivity[TOBI_SCALAR_LIMIT];                /* m2/s                                        */
     float per_eddy[TOBI_SCALAR_LIMIT];                   /* 1: of the eddy viscosity                    */
     float most_eddy;                                     /* m2/s: of it, in a step of this length       */
-    tobi_scalar_wall plane[6][TOBI_SCALAR_LIMIT];        /* of view.plane                               */
     int thins;                                           /* 1: `thinning` of any is not 0               */
     float thinning[TOBI_SCALAR_LIMIT];
     float lattice;                                       /* 1: of sigma, so that walls give their flux  */

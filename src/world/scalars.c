@@ -163,7 +163,7 @@ tobi_status tobi_world_add_scalar_value(tobi_world *w, const tobi_scalar_value_d
     p.field = def->field;
     p.value = def->value;
     p.wall.fixed = def->value > TOBI_NO_VALUE;
-    p.wall.value = p.wall.fixed != 0 ? (float)def->value : 0;
+    p.wall.value = p.wall.fixed != 0 ? (float)(def->value - c->value) : 0;
     p.wall.flux = (float)(def->flux/c->capacity);
     p.wall.resistance = def->transfer > 0 ? (float)(c->capacity/def->transfer) : 0;
     snprintf(p.name, sizeof p.name, "%s", def->name ? def->name : name);
@@ -215,7 +215,7 @@ const char *tobi_world_scalar_flow(const tobi_world *w, int number, tobi_scalar_
         const tobi_scalar_place *p = &w->sim.scalar_place[k];
         if (p->kind != TOBI_SCALAR_AT_SIDE && p->kind != TOBI_SCALAR_AT_BODY) continue;
         if (number-- > 0) continue;
-        if (flow) *flow = (tobi_scalar_flow){ p->field, p->flow };
+        if (flow) *flow = (tobi_scalar_flow){ field_name[p->field], field_unit[p->field], p->flow };
         return p->name;
     }
     return NULL;

@@ -19,6 +19,14 @@ enum { CASES = sizeof cases/sizeof *cases };
 
 static const double START[2] = {20, 0.03}, DIFFUSIVITY[2] = {1e-4, 3e-6}, PER_EDDY[2] = {1/0.85, 1/0.7};
 
+/* Of a plane and a scalar: a value, one behind a layer, a flux, nothing. */
+static tobi_scalar_wall make_wall(int plane, int k)
+{
+    return plane == 0 ? (tobi_scalar_wall){1, 3.0f + (float)k, 0, 0}
+         : plane == 1 ? (tobi_scalar_wall){1, -2, 0, 0.01f}
+         : plane == 2 ? (tobi_scalar_wall){0, 0, 5, 0} : (tobi_scalar_wall){0, 0, 0, 0};
+}
+
 typedef struct scene { rig g; row *in; tobi_float4 *now, *change; tobi_double2 *own; } scene;
 
 /* Some of the first liquid have more. */
@@ -38,10 +46,6 @@ static void open_scene(scene *s, const rig_case *c)
         v->scalar.lift.value[k] = START[k];
         v->scalar.diffusivity[k] = (float)DIFFUSIVITY[k];
         v->scalar.per_eddy[k] = (float)PER_EDDY[k];
-        for (int p = 0; p < v->plane_count; p++)     /* a value, one behind a layer, a flux, nothing */
-            v->scalar.plane[p][k] = p == 0 ? (tobi_scalar_wall){1, 3.0f + k, 0, 0}
-                                  : p == 1 ? (tobi_scalar_wall){1, -2, 0, 0.01f}
-                                  : p == 2 ? (tobi_scalar_wall){0, 0, 5, 0} : (tobi_scalar_wall){0, 0, 0, 0};
     }
     v->scalar.lattice = 0.97f;
     v->scalar.dt = 2e-3f;
@@ -70,7 +74,7 @@ static double eddy(const scene *s, int i)
     return fmin(s->g.view.eddy[s->g.o.fluid[i]]*s->in[i][SHEAR_RATE]/density(s, i), find_most_eddy(s));
 }
 
-/* Eq. (1), (3): unit/s. */
+/* Eq. (1) without walls: unit/s. */
 static double find_rate(const scene *s, int k, int i)
 {
     const oracle *o = &s->g.o;
@@ -81,15 +85,19 @@ static double find_rate(const scene *s, int k, int i)
         rate += 2*rho*d*o->volume*o->g_scale*oracle_f(o, r)*(difference(s, k, j) - difference(s, k, i));
         (void)x;
     }
-    for (int p = 0; p < o->plane_count; p++) {
-        const tobi_scalar_wall *w = &s->g.view.scalar.plane[p][k];
-        const double away = wall_distance(o, s->in, i, p), at = fmax(away, 0.25*o->d),
-                     d = DIFFUSIVITY[k] + PER_EDDY[k]*eddy(s, i), rho = density(s, i);
-        if (away >= o->h) continue;
-        rate += 2*s->g.view.scalar.lattice*look_up(o, o->sigma, at)*
-                (w->flux/rho + w->fixed*d*(w->value - difference(s, k, i))/(w->resistance*rho*d + at));
-    }
     return rate;
+}
+
+/* Eq. (3), of one plane: unit/s. */
+static double find_wall_rate(const scene *s, int k, int p, int i)
+{
+    const oracle *o = &s->g.o;
+    const tobi_scalar_wall w = make_wall(p, k);
+    const double away = wall_distance(o, s->in, i, p), at = fmax(away, 0.25*o->d),
+                 d = DIFFUSIVITY[k] + PER_EDDY[k]*eddy(s, i), rho = density(s, i);
+    if (away >= o->h) return 0;
+    return 2*s->g.view.scalar.lattice*look_up(o, o->sigma, at)*
+           (w.flux/rho + w.fixed*d*(w.value - difference(s, k, i))/(w.resistance*rho*d + at));
 }
 
 /* Eq. (4): the gradient by least squares, solved by elimination; kept within the differences around. */
@@ -145,6 +153,35 @@ static void kernels_follow_the_equations(void **state)
             if (!(scale[n] > 0 && worst[n] <= 2e-5*scale[n]))
                 fail_msg("case %d, number %d: off by %g of %g", c, n, worst[n], scale[n]);
         for (int n = 0; n < 4; n++) assert_true(fabs(t[n] - sum[n]) <= 1e-5*sum[n] && sum[n] > 0);
+        close_scene(&s);
+    }
+}
+
+static void walls_follow_the_equation(void **state)
+{
+    (void)state;
+    for (int c = 0; c < CASES; c++) {
+        scene s;
+        double worst = 0, scale = 0;
+        open_scene(&s, &cases[c]);
+        const sph_view *v = &s.g.view;
+        launch(&s, sph_kernels_for(s.g.exec.isa, cases[c].shape)->sph_scalar_look, NULL);
+        for (int i = 0; i < s.g.p.count; i++)
+            for (int p = 0; p < v->plane_count; p++)
+                for (int k = 0; k < 2; k++) {
+                    const tobi_scalar_wall w = make_wall(p, k);
+                    const float away = sph_plane_distance(v, p, i),
+                                at = away > 0.25f*v->spacing ? away : 0.25f*v->spacing,
+                                d = v->scalar.diffusivity[k] + v->scalar.per_eddy[k]*s.now[i].z;
+                    const double e = find_wall_rate(&s, k, p, i),
+                                 made = away < v->h ? sph_scalar_wall_rate(v, &w, d,
+                                            sph_plane_value(v, v->table->sigma, at), at, (&s.now[i].x)[k],
+                                            s.now[i].w) : 0;
+                    scale = fmax(scale, fabs(e));
+                    worst = fmax(worst, fabs(made - e));
+                }
+        if (!(worst <= 2e-5*scale && (scale > 0 || v->plane_count == 0)))
+            fail_msg("case %d: off by %g of %g", c, worst, scale);
         close_scene(&s);
     }
 }
@@ -221,6 +258,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(kernels_follow_the_equations),
+        cmocka_unit_test(walls_follow_the_equation),
         cmocka_unit_test(amounts_stay),
         cmocka_unit_test(viscosity_falls_as_it_should),
         cmocka_unit_test(instruction_sets_give_the_same_bits),
