@@ -12,7 +12,8 @@ enum { METHODS = sizeof methods/sizeof *methods };
 static const double LENGTH = 0.5, HEIGHT = 0.2, DENSITY = 800, CAPACITY = 2000, D = 1e-2;
 
 /* Full of liquid at rest, without gravity; periodic across x. */
-static tobi_world *make_slab(const char *method, int dimension, double spacing, const double gravity[3])
+static tobi_world *make_flow(const char *method, int dimension, double spacing, const double gravity[3],
+                             double speed)
 {
     tobi_world_def d = tobi_default_world_def();
     tobi_fluid_def fluid = tobi_default_fluid_def();
@@ -31,9 +32,15 @@ static tobi_world *make_slab(const char *method, int dimension, double spacing, 
     fluid.name = "oil";
     fluid.density = DENSITY;
     fluid.viscosity = 0.01;
+    fill.velocity[1] = speed;
     OK(tobi_world_create(&d, NULL, &w, &err));
     OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
     return w;
+}
+
+static tobi_world *make_slab(const char *method, int dimension, double spacing, const double gravity[3])
+{
+    return make_flow(method, dimension, spacing, gravity, 0);
 }
 
 static void add_temperature(tobi_world *w, double value, double expansion)
@@ -137,6 +144,21 @@ static void fluxes_bring_what_they_say(void **state)
                  hottest = look(w).mean + slope*(LENGTH/3 - first + first*first/(2*LENGTH));
     close_to("hottest", "dfsph", look(w).most, hottest, 1e-3);
     tobi_world_destroy(w);
+}
+
+/* Liquid that goes along the wall; the bound was set before the first run. */
+static void moving_liquid_takes_a_flux(void **state)
+{
+    const double flux = 4000, until = 2*HEIGHT/0.2;
+    (void)state;
+    for (int m = 0; m < METHODS; m++) {
+        tobi_world *w = make_flow(methods[m], 2, LENGTH/20, NULL, 0.2);
+        add_temperature(w, 20, 0);
+        add_side(w, TOBI_X_MIN, TOBI_NO_VALUE, flux, 0);
+        advance(w, until);
+        close_to("amount", methods[m], look(w).amount, flux*HEIGHT*until, 0.05);
+        tobi_world_destroy(w);
+    }
 }
 
 /* Nothing passes through walls that nothing is said of, and the step of two halves spreads as
@@ -433,6 +455,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plates_conduct_by_all),      cmocka_unit_test(layers_resist),
         cmocka_unit_test(fluxes_bring_what_they_say), cmocka_unit_test(halves_mix),
+        cmocka_unit_test(moving_liquid_takes_a_flux),
         cmocka_unit_test(bodies_conduct),             cmocka_unit_test(warm_liquid_is_lighter),
         cmocka_unit_test(all_gravity_pulls_less),
         cmocka_unit_test(warm_liquid_is_thinner_by_all),
