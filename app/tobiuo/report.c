@@ -140,6 +140,7 @@ static int read_run(report *r)
     if (code == 0) code = read_one(&r->lines, r->dir, "lines.csv");
     if (code == 0) code = read_one(&r->joints, r->dir, "joints.csv");
     if (code == 0) code = read_one(&r->zones, r->dir, "porous_zones.csv");
+    if (code == 0) code = read_one(&r->scalars, r->dir, "scalars.csv");
     if (code != 0) return code;
     const int time = table_column(&r->history, "time");
     const double end = r->history.rows ? table_number(&r->history, r->history.rows - 1, time) : 0;
@@ -163,6 +164,7 @@ static void free_run(report *r)
     table_free(&r->lines);
     table_free(&r->joints);
     table_free(&r->zones);
+    table_free(&r->scalars);
     tobi_world_destroy(r->world);
     tobi_scene_free(r->loaded);
     json_decref(r->scene);

@@ -174,7 +174,7 @@ static void write_probes(const report *r)
     }
 }
 
-/* A table for each line, joint, hinge or guide: their names are what stands before a column of their own. */
+/* A table for each line, joint, hinge, guide, zone, scalar or wall of it: their names are what stands before a column of their own. */
 static void write_held(const report *r, const table *t, tobi_table list, const char *last, const char *kind)
 {
     const part p = { t, NULL, r->from };
@@ -203,6 +203,8 @@ void write_tables(const report *r)
     write_held(r, &r->lines, TOBI_TABLE_LINES, "_tension", TEXT("Line"));
     write_held(r, &r->joints, TOBI_TABLE_JOINTS, "_gap", TEXT("Joint"));
     write_held(r, &r->zones, TOBI_TABLE_POROUS, "_volume", TEXT("Porous zone"));
+    write_held(r, &r->scalars, TOBI_TABLE_SCALARS, "_mean", TEXT("Liquid:"));
+    write_held(r, &r->scalars, TOBI_TABLE_SCALAR_FLOWS, "_passed", TEXT("Wall"));
     if (r->probes.columns > 0) write_probes(r);
     write_waves(r);
     write_columns(r, &all, TOBI_TABLE_HISTORY, "", tr("The whole"));

@@ -17,7 +17,7 @@ STAGE = re.compile(r"tobi_stage_end\(([^;]*);")
 PIECE = re.compile(r'"((?:[^"\\]|\\.)*)"')
 CONVERSION = re.compile(r"%[-+#0]*(?:\*|\d+)?(?:\.(?:\*|\d+))?(?:hh|h|ll|l|z|j|t)?[diouxXeEfgGcsp%]")
 TAG = re.compile(r"<[^<>]*>")
-TABLES, SOLIDS = 12, 8                         # of enum tobi_table
+TABLES, SOLIDS = 14, 8                         # of enum tobi_table
 
 
 class Column(ctypes.Structure):

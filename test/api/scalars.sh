@@ -58,6 +58,8 @@ check "and runs alike" cmp whole_isph/scalars.csv again/scalars.csv
 printf "x,y\n0.1,0.1\n" > places.csv
 expect 0 "" sample whole_isph --points places.csv --fields temperature
 expect 0 "" report whole_isph
+check "the report has the heat of the liquid and of each wall" \
+    test "$(grep -c "Liquid: temperature\|Liquid: concentration\|Wall floor_temperature\|Wall heater_temperature" whole_isph/report.html)" = 4
 expect 0 "" check tank.json
 check "check tells the range" grep -q "temperature      20 to " out.txt
 
