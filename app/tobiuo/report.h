@@ -13,7 +13,7 @@ typedef struct report {
     tobi_world *world;                  /* made of the scene, not started; NULL: see why          */
     tobi_scene *loaded;
     char why[300];                      /* why there is no world                                  */
-    table history, bodies, probes, lines, joints, zones, scalars;   /* without columns if there is no such file */
+    table history, bodies, probes, lines, joints, zones, scalars;   /* without columns: no such file */
     double from;                        /* s: means and extremes are of the time from it on        */
     int dimension;
     double spacing;                     /* m; 0: not known                                        */

@@ -174,7 +174,8 @@ static void write_probes(const report *r)
     }
 }
 
-/* A table for each line, joint, hinge, guide, zone, scalar or wall of it: their names are what stands before a column of their own. */
+/* A table for each line, joint, hinge, guide, zone, scalar and wall of a scalar: their names are what stands
+   before a column of their own. */
 static void write_held(const report *r, const table *t, tobi_table list, const char *last, const char *kind)
 {
     const part p = { t, NULL, r->from };
