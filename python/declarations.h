@@ -3,3 +3,4 @@
 #include "tobiuo/run.h"
 #include "tobiuo/sample.h"
 #include "tobiuo/scene.h"
+#include "tobiuo/tobiuo.h"

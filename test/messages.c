@@ -37,7 +37,7 @@ static void note(const char *format)
     va_list args;                                 \
     note(format);                                 \
     va_start(args, format);                       \
-    vsnprintf(text, sizeof text, format, args);   \
+    vsnprintf(text, sizeof text, tobi_text(format), args);   \
     va_end(args)
 
 tobi_status __wrap_tobi_fail(tobi_error *err, tobi_status status, const char *format, ...);

@@ -133,7 +133,7 @@ enum { KEY_UNTIL = 256, KEY_SPACING, KEY_SET, KEY_LANGUAGE, KEY_OWN };
     { "spacing", KEY_SPACING, "M", 0, "particle spacing of the fluid, m", 0 }, \
     { "set", KEY_SET, "PATH=VALUE", 0, \
       "change any value of the scene, e.g. fluids[0].viscosity=0.1", 0 }
-/* The option of commands that write for readers; before it, choose_language(NULL). */
+/* The option of commands that write for readers. */
 #define LANGUAGE_OPTION \
     { "language", KEY_LANGUAGE, "LANGUAGE", 0, \
       "ja (Japanese) or en (English); by default as LC_ALL, LC_MESSAGES or LANG says", 0 }

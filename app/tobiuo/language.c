@@ -1,25 +1,18 @@
 /* English texts and their Japanese: the catalogue ja.po as a table, by CMake. The locale of the C
-   library is not asked: a machine on which no Japanese one was generated has only "C". Drawback: each
-   text is compared with all. */
+   library is not asked: a machine on which no Japanese one was generated has only "C". Drawback: the
+   library has a table of its own, so a text of both stands in both catalogues. */
 #include "language.h"
+#include "tobiuo/tobiuo.h"
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const struct { const char *english, *japanese; } texts[] = {
-    { NULL, NULL
-#include "japanese.inc"
-    }
-};
+void app_texts_sort(void);
+const char *app_texts_find(const char *text) __attribute__((format_arg(1)));
 
 static int is_japanese;
 
-const char *tr(const char *text)
-{
-    for (size_t k = 1; is_japanese && *text && k < sizeof texts/sizeof *texts; k++)
-        if (strcmp(texts[k].english, text) == 0 && *texts[k].japanese) return texts[k].japanese;
-    return text;
-}
+const char *tr(const char *text) { return is_japanese ? app_texts_find(text) : text; }
 
 /* Of a Japanese user, by the first variable that says anything. */
 static int asks_for_japanese(void)
@@ -36,6 +29,8 @@ int choose_language(const char *name)
 {
     if (name && strcmp(name, "ja") != 0 && strcmp(name, "en") != 0) return -1;
     is_japanese = name ? strcmp(name, "ja") == 0 : asks_for_japanese();
+    if (is_japanese) app_texts_sort();
+    tobi_set_language(language_name(), NULL);
     return 0;
 }
 

@@ -1,4 +1,4 @@
-/* The language of pages and plots. It is chosen once, before the first text. */
+/* The language of the program and of the library's messages. It is chosen before the first text. */
 #pragma once
 
 /* The Japanese of an English text, where that was chosen and there is one; else the text itself. */

@@ -1,5 +1,6 @@
 /* tobiuo: picks the command. */
 #include "app.h"
+#include "language.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <malloc.h>
@@ -140,6 +141,7 @@ int main(int argc, char **argv)
     if (atexit(check_output) != 0) return EXIT_ERROR;
     wait_without_spinning(argv);
     argp_err_exit_status = EXIT_USAGE;
+    choose_language(NULL);
     if (argc < 2) {
         print_usage(stderr);
         return EXIT_USAGE;

@@ -462,7 +462,6 @@ int tobiuo_plot(int argc, char **argv)
 {
     plot_options o = { .format = "svg" };
     plot_files files;
-    choose_language(NULL);
     parse_arguments(&plot_argp, argc, argv, &o);
     const int code = draw_plots(o.dir, o.scene, o.format, &files);
     for (int k = 0; k < files.count && code == 0; k++) printf("%s/%s\n", files.folder, files.name[k]);

@@ -428,7 +428,6 @@ const struct argp report_argp = { .options = options, .parser = parse, .args_doc
 int tobiuo_report(int argc, char **argv)
 {
     report_options o = { 0 };
-    choose_language(NULL);
     parse_arguments(&report_argp, argc, argv, &o);
     report r = { .dir = o.dir, .from = o.from };
     char *out = o.out ? strdup(o.out) : join(o.dir, "report.html");

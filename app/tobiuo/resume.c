@@ -67,7 +67,6 @@ const struct argp resume_argp = { .options = options, .parser = parse, .args_doc
 int tobiuo_resume(int argc, char **argv)
 {
     resume_options o = { 0 };
-    choose_language(NULL);
     parse_arguments(&resume_argp, argc, argv, &o);
     char *path = NULL;
     if (asprintf(&path, "%s/resolved.json", o.dir) < 0) return complain("out of memory");

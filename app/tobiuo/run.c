@@ -186,7 +186,6 @@ const struct argp run_argp = { .options = options, .parser = parse, .args_doc = 
 int tobiuo_run(int argc, char **argv)
 {
     run_options o = { 0 };
-    choose_language(NULL);
     parse_arguments(&run_argp, argc, argv, &o);
     tobi_scene *scene = load_scene(o.scene, &o.set);
     int code = scene ? run_scene(scene, &o) : EXIT_ERROR;

@@ -9,7 +9,7 @@
      can go on.
    - TOBI_STALLED: the step was made; who wants to go on steps again.
    - tobi_world_load, save, read and others that need particles start the world, see tobi_world_start.
-   All units are SI. No call prints, exits or keeps global state.
+   All units are SI. No call prints or exits. tobi_set_language alone keeps global state.
 
    Mistakes of the calling program: a NULL where something must stand, a number out of range and an index of
    nothing are answered with TOBI_INVALID or TOBI_NOT_FOUND by calls that return a status, with 0 or NULL by
@@ -37,7 +37,12 @@ typedef struct tobi_world tobi_world;
 TOBI_API const char *tobi_version(void);
 /* Names of the methods by number ("dfsph"), NULL past the end. */
 TOBI_API const char *tobi_method_name(int index);
+/* A word for a program, in English. */
 TOBI_API const char *tobi_status_text(tobi_status status);
+/* The language of the texts of errors, mistakes of scenes and notes: "en", as at the start, or "ja". It holds
+   for all that the process says from then on; what was said stays. As with setlocale, no other thread may be
+   within a call of the library. Keys, names, numbers and units are the same in both. */
+TOBI_API tobi_status tobi_set_language(const char *name, tobi_error *err);
 
 TOBI_API tobi_world_def  tobi_default_world_def(void);
 TOBI_API tobi_dfsph_def  tobi_default_dfsph_def(void);

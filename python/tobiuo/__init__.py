@@ -7,7 +7,7 @@
 
 All units are SI. A call that fails raises tobiuo.Error with the text of the library.
 """
-from .library import Error, version as __version__
+from .library import Error, set_language, version as __version__
 from .results import Moment, Results, read_table
 from .run import run
 from .sampling import Sample, sample
@@ -15,4 +15,4 @@ from .scene import check, describe, shipped
 from .world import World
 
 __all__ = ["Error", "Moment", "Results", "Sample", "World", "__version__", "check", "describe", "read_table", "run", "sample",
-           "shipped"]
+           "set_language", "shipped"]

@@ -75,6 +75,11 @@ def call(function, *arguments):
         raise_error(status, error)
 
 
+def set_language(name):
+    """The language of errors, mistakes and notes of the whole process: "en", as at the start, or "ja"."""
+    call(lib.tobi_set_language, name.encode())
+
+
 def array_of(pointer, shape, kind=np.float64):
     """A copy of `shape` numbers."""
     count = int(np.prod(shape))

@@ -42,7 +42,7 @@ def load(scene, values=None, name=None):
     lib.tobi_report_free(report)
     if status != lib.TOBI_OK:
         if lines:
-            error.text = "\n".join(lines).encode()[:2047]
+            error.text = "\n".join(lines).encode()[:2047].decode(errors="ignore").encode()
         raise_error(status, error)
     return out
 

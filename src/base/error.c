@@ -11,8 +11,9 @@ tobi_status tobi_fail(tobi_error *err, tobi_status status, const char *format, .
     err->key[0] = '\0';
     va_list args;
     va_start(args, format);
-    vsnprintf(err->text, sizeof err->text, format, args);
+    vsnprintf(err->text, sizeof err->text, tobi_text(format), args);
     va_end(args);
+    tobi_text_mend(err->text);
     return status;
 }
 

@@ -1,6 +1,7 @@
 /* Filling a tobi_error, and returning early from a failed call. */
 #pragma once
 #include "tobiuo/base.h"
+#include "base/language.h"
 #include <stdarg.h>
 
 /* Writes status and formatted text into err (NULL is fine) and returns status. */
@@ -11,6 +12,7 @@ tobi_status tobi_fail(tobi_error *err, tobi_status status, const char *format, .
 tobi_status tobi_at_key(tobi_error *err, tobi_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+enum { TOBI_NOTE = 700 };        /* bytes: room of a note, in any language */
 enum { TOBI_EXCERPT = 16 };      /* bytes */
 
 /* A piece of a file that may not be what it was taken for, short enough to stand in a message: its first

@@ -13,8 +13,8 @@
 
 static const char *name_kind(mode_t mode)
 {
-    return S_ISDIR(mode) ? "folder" : S_ISLNK(mode) ? "symbolic link" : S_ISFIFO(mode) ? "FIFO"
-         : S_ISSOCK(mode) ? "socket" : "device";
+    return S_ISDIR(mode) ? tr("folder") : S_ISLNK(mode) ? tr("symbolic link") : S_ISFIFO(mode) ? "FIFO"
+         : S_ISSOCK(mode) ? tr("socket") : tr("device");
 }
 
 tobi_status tobi_file_check_target(const char *path, tobi_error *err)
@@ -67,7 +67,7 @@ tobi_status tobi_file_open(tobi_file *file, const char *path, tobi_error *err)
     if (!file->handle) {
         int code = errno;
         release(file);
-        return tobi_fail(err, TOBI_IO, "cannot write %s: %s", path, strerror(code));
+        return tobi_fail(err, TOBI_IO, "cannot write %s: %s", path, tobi_reason(code));
     }
     return TOBI_OK;
 }
@@ -141,7 +141,7 @@ tobi_status tobi_file_commit(tobi_file *file, tobi_error *err)
     else if (file->synced) sync_folder(file);
     tobi_status status = TOBI_OK;
     if (file->error)
-        status = tobi_fail(err, TOBI_IO, "cannot write %s: %s", file->path, strerror(file->error));
+        status = tobi_fail(err, TOBI_IO, "cannot write %s: %s", file->path, tobi_reason(file->error));
     release(file);
     return status;
 }

@@ -15,15 +15,15 @@
 
 static const char *name_kind(mode_t mode)
 {
-    if (S_ISDIR(mode)) return "a directory";
-    if (S_ISFIFO(mode)) return "a pipe";
-    return S_ISSOCK(mode) ? "a socket" : "a device";
+    if (S_ISDIR(mode)) return tr("a directory");
+    if (S_ISFIFO(mode)) return tr("a pipe");
+    return S_ISSOCK(mode) ? tr("a socket") : tr("a device");
 }
 
 static tobi_status fail_errno(const char *path, const char *what, int code, tobi_error *err)
 {
     return tobi_fail(err, code == ENOENT || code == ENOTDIR ? TOBI_NOT_FOUND : TOBI_IO, "%s %s: %s", what,
-                     path, strerror(code));
+                     path, tobi_reason(code));
 }
 
 static tobi_status judge(const char *path, const char *what, int64_t limit, const struct stat *info,

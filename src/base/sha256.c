@@ -10,7 +10,7 @@ tobi_status tobi_sha256_file(const char *path, char digest[TOBI_SHA256_TEXT], in
     unsigned char buffer[1 << 14];
     SHA2_CTX state;
     FILE *file;
-    TOBI_TRY(tobi_plain_open(path, "file", 0, &file, NULL, err));
+    TOBI_TRY(tobi_plain_open(path, tr("file"), 0, &file, NULL, err));
     SHA256Init(&state);
     *size = 0;
     for (size_t n; (n = fread(buffer, 1, sizeof buffer, file)) > 0; *size += (int64_t)n)

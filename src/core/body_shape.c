@@ -96,7 +96,7 @@ static tobi_status make_knife(tobi_body *b, const tobi_body_def *def, int dimens
 static tobi_status make_outline(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
 {
     char whose[120];
-    snprintf(whose, sizeof whose, "body '%s'", b->name);
+    snprintf(whose, sizeof whose, tr("body '%s'"), b->name);
     return tobi_mesh_outline(whose, &def->outline, dimension, &b->mesh, err);
 }
 
@@ -165,8 +165,8 @@ void tobi_body_take_centre(tobi_body *b, const tobi_body_def *def, int dimension
         outside |= !(given[a] >= min[a] && given[a] <= max[a]);
     }
     if (outside)
-        tobi_mesh_note(&b->mesh, "its centre_of_mass, (%g, %g, %g) m, lies outside of it, (%g, %g, %g) to "
-                       "(%g, %g, %g) m: it is a place in the domain, as the body starts", given[0], given[1],
+        tobi_mesh_note(&b->mesh, tr("its centre_of_mass, (%g, %g, %g) m, lies outside of it, (%g, %g, %g) to "
+                       "(%g, %g, %g) m: it is a place in the domain, as the body starts"), given[0], given[1],
                        given[2], min[0], min[1], min[2], max[0], max[1], max[2]);
 }
 

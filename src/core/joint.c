@@ -67,8 +67,9 @@ static tobi_status check_start(const tobi_body_def *def, int kind, const char *k
     if (!(vec3_distance2(given, has) > 1e-12*size) || !(size > 0)) return TOBI_OK;
     return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s' cannot start with that %s: its %s leaves "
                                       "it %s alone", def->name ? def->name : "", key, kinds[kind],
-                                      kind == TOBI_JOINT_HINGE ? "the turn about the axis, set off by "
-                                      "angular_velocity," : "the way along the axis, set off by velocity,"),
+                                      kind == TOBI_JOINT_HINGE ? tr("the turn about the axis, set off by "
+                                      "angular_velocity,")
+                                      : tr("the way along the axis, set off by velocity,")),
                        "%s", key);
 }
 

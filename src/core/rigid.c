@@ -167,7 +167,8 @@ static tobi_status check_swimmer(const tobi_body_def *def, const char *name, tob
     const int joined = vec3_dot(hinge, hinge) + vec3_dot(guide, guide) > 0;
     if (def->vessel || def->blade || joined)
         return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s' changes its shape and moves by forces; a %s does "
-                         "not", name, joined ? "body on a hinge or guide" : def->vessel ? "vessel" : "blade");
+                         "not", name, joined ? tr("body on a hinge or guide") : def->vessel ? tr("vessel")
+                         : tr("blade"));
     return TOBI_OK;
 }
 

@@ -60,7 +60,7 @@ static tobi_status check_shape(const tobi_body *b, double t, tobi_error *err)
     if (now > LEAST*rest) return TOBI_OK;
     return tobi_fail(err, TOBI_INVALID, "body '%s': its motion %s at t = %.9g s, to %.3g of its volume at "
                      "rest; allowed is %g and more", b->name,
-                     now < 0 ? "turns it inside out" : "squeezes it", t, now/rest, LEAST);
+                     now < 0 ? tr("turns it inside out") : tr("squeezes it"), t, now/rest, LEAST);
 }
 
 static tobi_status ask(const tobi_body *b, double t, int64_t n, const double (*rest)[3], double (*out)[3],

@@ -98,7 +98,7 @@ int tobi_stl_read_binary(const char *path, int64_t size, tobi_mesh *out, tobi_st
 {
     unsigned char head[STL_HEAD];
     FILE *f = NULL;
-    if (size > STL_HEAD) tobi_plain_open(path, "mesh", 0, &f, NULL, NULL);
+    if (size > STL_HEAD) tobi_plain_open(path, tr("mesh"), 0, &f, NULL, NULL);
     const int whole = f && fread(head, 1, sizeof head, f) == sizeof head;
     const int mine = whole && (int64_t)read_u32(head + 80)*STL_ROW + STL_HEAD == size;
     *status = TOBI_OK;
@@ -146,14 +146,14 @@ static const char *read_word_line(ply_header *h, char *line)
         h->ascii = n > 1 && !strcmp(word[1], "ascii");
         if (n > 1 && (h->ascii || !strcmp(word[1], "binary_little_endian") ||
                       !strcmp(word[1], "binary_big_endian"))) return NULL;
-        return "allowed formats are ascii, binary_little_endian and binary_big_endian";
+        return tr("allowed formats are ascii, binary_little_endian and binary_big_endian");
     }
     if (!strcmp(word[0], "element")) {
         char *end = NULL;
         end_element(h);
         h->rows = n > 2 ? strtod(word[2], &end) : -1;
         if (n < 3 || *end || !(h->rows >= 0 && h->rows <= 1e12) || h->rows != floor(h->rows))
-            return "an element needs a name and a whole number of rows";
+            return tr("an element needs a name and a whole number of rows");
         if (!strcmp(word[1], "vertex")) h->vertices = h->rows;
         if (!strcmp(word[1], "face")) h->faces = h->rows;
         return NULL;
@@ -161,18 +161,18 @@ static const char *read_word_line(ply_header *h, char *line)
     if (!strcmp(word[0], "property")) {
         int list = n > 1 && !strcmp(word[1], "list"), size = n > 1 ? size_of_type(word[list ? 2 : 1]) : 0;
         if (n != (list ? 5 : 3) || !size || (list && !size_of_type(word[3])))
-            return "a property needs a type and a name, or list, two types and a name";
+            return tr("a property needs a type and a name, or list, two types and a name");
         h->row_bytes += h->ascii ? 2 : size;
         return NULL;
     }
-    return "a header holds format, comment, obj_info, element and property lines";
+    return tr("a header holds format, comment, obj_info, element and property lines");
 }
 
 static tobi_status judge_header(const char *path, const ply_header *h, double left, tobi_error *err)
 {
     if (!(h->vertices > 0) || !(h->faces > 0))
         return tobi_fail(err, TOBI_INVALID, "mesh '%s' has no %s; its header must name both vertex and face "
-                         "elements", path, h->vertices > 0 ? "faces" : "vertices");
+                         "elements", path, h->vertices > 0 ? tr("faces") : tr("vertices"));
     /* the last row of a text file may lack its newline */
     if (h->bytes <= left + 1) return TOBI_OK;
     return tobi_fail(err, TOBI_INVALID, "mesh '%s' claims %.0f vertices and %.0f faces, at least %.0f bytes; "
@@ -206,7 +206,7 @@ tobi_status tobi_ply_check(const char *path, int64_t size, tobi_error *err)
 {
     FILE *f;
     char line[1000];
-    TOBI_TRY(tobi_plain_open(path, "mesh", 0, &f, NULL, err));
+    TOBI_TRY(tobi_plain_open(path, tr("mesh"), 0, &f, NULL, err));
     tobi_status status = read_header(f, path, size, line, err);
     fclose(f);
     return status;

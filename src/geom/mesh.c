@@ -88,7 +88,8 @@ int tobi_mesh_hint_units(const tobi_mesh *mesh, int dimension, const double size
                          size_t room)
 {
     static const struct { const char *name; double factor; } units[] = {
-        {"millimetres", 0.001}, {"inches", 0.0254}, {"centimetres", 0.01}, {"micrometres", 1e-6}};
+        {TR("millimetres"), 0.001}, {TR("inches"), 0.0254}, {TR("centimetres"), 0.01}, {TR("micrometres"),
+                                                                                        1e-6}};
     double min[3], max[3], mine = 0, domain = 0;
     text[0] = 0;
     tobi_mesh_box(mesh, min, max);
@@ -97,16 +98,16 @@ int tobi_mesh_hint_units(const tobi_mesh *mesh, int dimension, const double size
         domain = fmax(domain, size[k]);
     }
     if (!(mine > 0 && domain > 0) || (mine <= 10*domain && mine >= 1e-3*domain)) return 0;
-    int used = snprintf(text, room, "the mesh is %.4g m long, %s than the domain of %.4g m: ", mine,
-                        mine > domain ? "far larger" : "far smaller", domain);
+    int used = snprintf(text, room, tr("the mesh is %.4g m long, %s than the domain of %.4g m: "), mine,
+                        mine > domain ? tr("far larger") : tr("far smaller"), domain);
     for (size_t i = 0; i < sizeof units/sizeof *units && mine > domain; i++) {
         double fitted = mine*units[i].factor/domain;
         if (fitted > 1 || fitted < 0.01) continue;
-        snprintf(text + used, room - (size_t)used, "are its units %s? Multiply its scale by %g",
-                 units[i].name, units[i].factor);
+        snprintf(text + used, room - (size_t)used, tr("are its units %s? Multiply its scale by %g"),
+                 tr(units[i].name), units[i].factor);
         return 1;
     }
-    snprintf(text + used, room - (size_t)used, "is its scale right?");
+    snprintf(text + used, room - (size_t)used, tr("is its scale right?"));
     return mine > domain ? 1 : -1;
 }
 

@@ -86,7 +86,7 @@ static tobi_status weld_borders(tobi_mesh *mesh, tobi_edge_report *report)
         TOBI_TRY(status);
     }
     if (used > 0)
-        tobi_mesh_note(mesh, "vertices on borders closer than %.3g m welded: %lld open edges became %lld",
+        tobi_mesh_note(mesh, tr("vertices on borders closer than %.3g m welded: %lld open edges became %lld"),
                        used*size, (long long)before, (long long)report->open);
     return TOBI_OK;
 }
@@ -145,7 +145,7 @@ static tobi_status drop_double_triangles(tobi_mesh *mesh)
         if (!drop[t]) memmove(mesh->triangles[kept++], mesh->triangles[t], sizeof *mesh->triangles);
     if (kept < n && kept) {
         mesh->triangle_count = kept;
-        tobi_mesh_note(mesh, "%lld double triangles dropped", (long long)(n - kept));
+        tobi_mesh_note(mesh, tr("%lld double triangles dropped"), (long long)(n - kept));
     }
     free(keys);
     free(drop);
@@ -352,8 +352,8 @@ static tobi_status cut_edges(tobi_mesh *mesh, const int32_t (*now)[3], const int
 static tobi_status part_non_manifold(tobi_mesh *mesh, int32_t (*opposite)[3], tobi_edge_report report)
 {
     tobi_status status = TOBI_OK;
-    tobi_mesh_note(mesh, "%lld edges with more than two triangles taken apart: parts that touch there stay "
-                   "apart", (long long)report.non_manifold);
+    tobi_mesh_note(mesh, tr("%lld edges with more than two triangles taken apart: parts that touch there "
+                   "stay apart"), (long long)report.non_manifold);
     for (int64_t cuts = 1; status == TOBI_OK && report.non_manifold && cuts;) {
         int32_t (*now)[3] = NULL;
         cuts = 0;

@@ -74,8 +74,8 @@ static tobi_status fail_non_manifold(const tobi_mesh *mesh, const orient_work *w
                      "two triangles and %lld with one, the first from (%.6g, %.6g, %.6g) to "
                      "(%.6g, %.6g, %.6g): sheets without thickness? %s",
                      w->name, (long long)r->non_manifold, (long long)r->open, a[0], a[1], a[2], b[0], b[1],
-                     b[2], w->what == OPEN ? "A vessel is open at its top alone, also in 2-D"
-                                             : "A closed surface is needed");
+                     b[2], w->what == OPEN ? tr("A vessel is open at its top alone, also in 2-D")
+                                             : tr("A closed surface is needed"));
 }
 
 /* True if half-edges h and g run from the same vertex, that is, if their triangles disagree. */
@@ -232,7 +232,7 @@ static tobi_status fail_flat(const orient_work *w, const double b[6], tobi_error
     if (w->holes.count) tobi_holes_describe(&w->holes, holes, sizeof holes);
     return tobi_fail(err, TOBI_INVALID, "mesh '%s': the shell around (%.6g, %.6g, %.6g) encloses no volume; "
                      "a body needs an inside%s%s", w->name, (b[0] + b[3])/2, (b[1] + b[4])/2,
-                     (b[2] + b[5])/2, holes[0] ? ". The surface has " : "", holes);
+                     (b[2] + b[5])/2, holes[0] ? tr(". The surface has ") : "", holes);
 }
 
 static tobi_status turn_shells(tobi_mesh *mesh, orient_work *w, tobi_error *err)
@@ -254,10 +254,10 @@ static tobi_status turn_shells(tobi_mesh *mesh, orient_work *w, tobi_error *err)
     }
     free(depth);
     if (hollow && w->what != VESSEL)                   /* it is there to be filled */
-        tobi_mesh_note(mesh, "%lld of %lld shells lie inside another one and are hollows",
+        tobi_mesh_note(mesh, tr("%lld of %lld shells lie inside another one and are hollows"),
                        (long long)hollow, (long long)s->count);
     if (turned)
-        tobi_mesh_note(mesh, "%lld of %lld shells turned: the outermost look outwards, hollows inwards",
+        tobi_mesh_note(mesh, tr("%lld of %lld shells turned: the outermost look outwards, hollows inwards"),
                        (long long)turned, (long long)s->count);
     return status;
 }
@@ -284,11 +284,11 @@ static tobi_status find_overlaps(tobi_mesh *mesh, tobi_error *err)
     TOBI_TRY(status);
     mesh->overlapping = twice + negative > OVERLAP_SEEN*inside;
     if (mesh->overlapping && twice > 0)
-        tobi_mesh_note(mesh, "parts of the surface overlap: %.2g %% of the volume lies in more than one "
-                       "and counts once", 100*twice/inside);
+        tobi_mesh_note(mesh, tr("parts of the surface overlap: %.2g %% of the volume lies in more than one "
+                       "and counts once"), 100*twice/inside);
     if (mesh->overlapping && negative > OVERLAP_SEEN*inside)
-        tobi_mesh_note(mesh, "parts of the surface are inside out: %.2g %% of the volume, which counts as "
-                       "outside", 100*negative/inside);
+        tobi_mesh_note(mesh, tr("parts of the surface are inside out: %.2g %% of the volume, which counts as "
+                       "outside"), 100*negative/inside);
     return TOBI_OK;
 }
 
@@ -330,8 +330,8 @@ static tobi_status judge_holes(tobi_mesh *mesh, orient_work *w, tobi_error *err)
                          "winding number of the open surface disagree about %.2g %% of the volume, allowed "
                          "are %.2g %%; close the surface", w->name, text, fmin(100*doubt, 1e6),
                          100*DOUBT_ALLOWED);
-    tobi_mesh_note(mesh, "%s closed by patches; the winding number of the open surface agrees, so volume, "
-                   "centre and inertia are those of the patched surface, to within %.2g %%", text,
+    tobi_mesh_note(mesh, tr("%s closed by patches; the winding number of the open surface agrees, so volume, "
+                   "centre and inertia are those of the patched surface, to within %.2g %%"), text,
                    fmax(100*doubt, 0.1));
     return TOBI_OK;
 }
@@ -344,7 +344,7 @@ static tobi_status orient_mesh(tobi_mesh *mesh, orient_work *w, tobi_error *err)
     if (report.open || report.non_manifold) TOBI_TRY(tobi_mesh_mend(mesh));
     TOBI_TRY(flood_mesh(mesh, w, &report, err));
     if (w->turned)
-        tobi_mesh_note(mesh, "%lld of %lld triangles turned to agree with their neighbours",
+        tobi_mesh_note(mesh, tr("%lld of %lld triangles turned to agree with their neighbours"),
                        (long long)w->turned, (long long)mesh->triangle_count);
     if (report.non_manifold) return fail_non_manifold(mesh, w, &report, err);
     int patched = report.open > 0;

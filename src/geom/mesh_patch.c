@@ -209,11 +209,11 @@ tobi_status tobi_mesh_patch(tobi_mesh *mesh, const int32_t (*opposite)[3], tobi_
 
 void tobi_holes_describe(const tobi_holes *h, char *text, size_t size)
 {
-    int used = snprintf(text, size, "%lld hole%s (%lld open edges)", (long long)h->count,
+    int used = snprintf(text, size, tr("%lld hole%s (%lld open edges)"), (long long)h->count,
                         h->count == 1 ? "" : "s", (long long)h->edges);
     for (int i = 0; i < h->listed && used > 0 && (size_t)used < size; i++)
-        used += snprintf(text + used, size - (size_t)used, "%s %.4g m around at (%.4g, %.4g, %.4g)",
-                         i ? "," : h->count > 3 ? ", the largest" : ":", h->largest[i].length,
+        used += snprintf(text + used, size - (size_t)used, tr("%s %.4g m around at (%.4g, %.4g, %.4g)"),
+                         i ? "," : h->count > 3 ? tr(", the largest") : ":", h->largest[i].length,
                          h->largest[i].centre[0], h->largest[i].centre[1], h->largest[i].centre[2]);
 }
 

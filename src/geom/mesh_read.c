@@ -146,8 +146,8 @@ static const struct aiScene *import(const char *path, import_header *header)
     free(text);
     if (scene) return scene;
     snprintf(header->text, sizeof header->text, "%s",
-             changed < 0 ? "it cannot be held in memory" : aiGetErrorString());
-    if (!header->text[0]) strcpy(header->text, "the importer gave up without a reason");
+             changed < 0 ? tr("it cannot be held in memory") : aiGetErrorString());
+    if (!header->text[0]) strcpy(header->text, tr("the importer gave up without a reason"));
     return NULL;
 }
 
@@ -175,7 +175,7 @@ static _Noreturn void run_child(const char *path, int fd, const allowance *allow
     c.triangles = malloc((size_t)(c.triangle_count + 1)*sizeof *c.triangles);
     if (c.textured) c.uv = malloc((size_t)(c.triangle_count + 1)*sizeof *c.uv);
     if (!c.vertices || !c.triangles || (c.textured && !c.uv) || c.vertex_count > INT32_MAX - 1) {
-        strcpy(header.text, "too large to import");
+        strcpy(header.text, tr("too large to import"));
         write_all(fd, &header, sizeof header);
         _exit(0);
     }
@@ -225,7 +225,7 @@ static tobi_status fail_refused(const char *path, const char *text, tobi_error *
     tobi_obj_fault fault;
     const char *dot = strrchr(path, '.');
     if (strstr(text, "bad_alloc"))
-        text = "it claims to hold far more than its size allows, or needs too much memory";
+        text = tr("it claims to hold far more than its size allows, or needs too much memory");
     if (dot && !strcasecmp(dot, ".obj") && tobi_obj_scan(path, &fault))
         return tobi_fail(err, TOBI_INVALID, "mesh '%s', line %lld: a face uses vertex index %lld, out of "
                          "range; allowed are 1 to %lld, or -1 and below counted back", path,
@@ -292,7 +292,7 @@ static tobi_status import_apart(const char *path, const allowance *allowed, tobi
 {
     int ends[2], finished = 0, state = 0;
     if (pipe2(ends, O_CLOEXEC))
-        return tobi_fail(err, TOBI_IO, "mesh '%s': no pipe for the importer: %s", path, strerror(errno));
+        return tobi_fail(err, TOBI_IO, "mesh '%s': no pipe for the importer: %s", path, tobi_reason(errno));
     pid_t child = fork();
     if (child == 0) {
         close(ends[0]);
@@ -301,7 +301,7 @@ static tobi_status import_apart(const char *path, const allowance *allowed, tobi
     close(ends[1]);
     if (child < 0) {
         close(ends[0]);
-        return tobi_fail(err, TOBI_IO, "mesh '%s': the importer cannot start: %s", path, strerror(errno));
+        return tobi_fail(err, TOBI_IO, "mesh '%s': the importer cannot start: %s", path, tobi_reason(errno));
     }
     tobi_status status = receive_mesh(path, ends[0], now() + allowed->seconds, out, &finished, err);
     close(ends[0]);
@@ -319,7 +319,7 @@ static tobi_status check_file(const char *path, allowance *allowed, tobi_error *
     const char *dot = strrchr(path, '.');
     FILE *file;
     int known = 0;
-    TOBI_TRY(tobi_plain_open(path, "mesh", FILE_LIMIT, &file, &allowed->size, err));
+    TOBI_TRY(tobi_plain_open(path, tr("mesh"), FILE_LIMIT, &file, &allowed->size, err));
     fclose(file);
     for (int i = 0; dot && i < 3; i++) known |= !strcasecmp(dot, formats[i]);
     if (!known)

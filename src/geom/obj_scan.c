@@ -47,7 +47,7 @@ int tobi_obj_scan(const char *path, tobi_obj_fault *fault)
     size_t room = 0;
     int found = 0;
     *fault = (tobi_obj_fault){0};
-    if (tobi_plain_open(path, "mesh", 0, &f, NULL, NULL) != TOBI_OK) return 0;
+    if (tobi_plain_open(path, tr("mesh"), 0, &f, NULL, NULL) != TOBI_OK) return 0;
     go_to_start(f);
     while (getline(&line, &room, f) > 0) fault->vertices += is_vertex(line);
     go_to_start(f);
@@ -76,7 +76,7 @@ int tobi_obj_add_zeros(const char *path, char **text, size_t *size)
     size_t length, lacking = 0, at = 0, mark;
     char *old;
     *text = NULL;
-    if (tobi_plain_read(path, "mesh", 0, &old, &length, NULL) != TOBI_OK) return -1;
+    if (tobi_plain_read(path, tr("mesh"), 0, &old, &length, NULL) != TOBI_OK) return -1;
     for (size_t i = 0; i < length; i++) lacking += (size_t)lacks_zero(old, i, length);
     mark = has_mark(old, length) ? 3 : 0;
     *size = length + lacking - mark;

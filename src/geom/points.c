@@ -125,7 +125,7 @@ tobi_status tobi_points_read(const char *path, const char *names, int64_t most, 
     *out = (tobi_points){ .width = t.width };
     FILE *file = fopen(path, "r");
     if (!file)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "%s: %s", path, strerror(errno));
+        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "%s: %s", path, tobi_reason(errno));
     while (status == TOBI_OK && getline(&line, &room, file) > 0) {
         t.line++;
         char *text = line;

@@ -186,7 +186,7 @@ tobi_status tobi_terrain_read(const char *path, tobi_terrain *out, tobi_error *e
     *out = (tobi_terrain){ 0 };
     FILE *file = fopen(path, "r");
     if (!file)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "%s: %s", path, strerror(errno));
+        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "%s: %s", path, tobi_reason(errno));
     int esri = 0;
     const int words = fscanf(file, "%15s", word);
     const int marked = strncmp(word, mark, strlen(mark)) == 0;

@@ -203,8 +203,8 @@ tobi_status tobi_mesh_make_vessel(tobi_mesh *mesh, double thickness, double usua
     }
     memcpy(out.notes, mesh->notes, sizeof out.notes);
     const int rims = out.triangle_count > 2*mesh->triangle_count;
-    tobi_mesh_note(&out, "it has no walls of its own: they lie outside of it, %.4g m thick%s", t,
-                   rims ? "" : "; it is closed all round");
+    tobi_mesh_note(&out, tr("it has no walls of its own: they lie outside of it, %.4g m thick%s"), t,
+                   rims ? "" : tr("; it is closed all round"));
     const tobi_status status = tobi_mesh_orient_vessel(&out, name, err);
     tobi_mesh_free(mesh);
     *mesh = out;

@@ -99,7 +99,7 @@ static tobi_status write_text(tobi_csv *csv, const tobi_csv_rows *rows, tobi_err
     }
     if (!code) return TOBI_OK;
     if (done > 0 && ftruncate(csv->fd, end) != 0) done = 0;   /* tobi_csv_open drops the torn line */
-    return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(code));
+    return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, tobi_reason(code));
 }
 
 int tobi_csv_is_gone(const tobi_csv *csv)
@@ -169,14 +169,14 @@ static tobi_status continue_table(tobi_csv *csv, int *empty, tobi_error *err)
 {
     char *text;
     size_t bytes, end = 0, n;
-    TOBI_TRY(tobi_plain_read(csv->path, "table", 0, &text, &bytes, err));
+    TOBI_TRY(tobi_plain_read(csv->path, tr("table"), 0, &text, &bytes, err));
     size_t header = line_length(text, bytes);
     while ((n = line_length(text + end, bytes - end)) > 0) end += n;
     tobi_status status = TOBI_OK;
     if (header > 0 && (header != csv->header.length || memcmp(text, csv->header.text, header) != 0))
         status = tobi_fail(err, TOBI_INVALID, "%s has other columns than this run writes", csv->path);
     else if (end < bytes && ftruncate(csv->fd, (off_t)end) != 0)
-        status = tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(errno));
+        status = tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, tobi_reason(errno));
     *empty = header == 0;
     free(text);
     return status;
@@ -188,7 +188,7 @@ static tobi_status open_table(tobi_csv *csv, tobi_csv_mode mode, tobi_error *err
     int empty = 1, flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
     TOBI_TRY(tobi_file_check_target(csv->path, err));
     csv->fd = open(csv->path, flags | (mode == TOBI_CSV_NEW ? O_TRUNC : 0), 0666);
-    if (csv->fd < 0) return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(errno));
+    if (csv->fd < 0) return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, tobi_reason(errno));
     if (mode == TOBI_CSV_APPEND) TOBI_TRY(continue_table(csv, &empty, err));
     csv->lost |= empty && mode == TOBI_CSV_APPEND;
     return empty ? write_text(csv, &csv->header, err) : TOBI_OK;
@@ -287,7 +287,7 @@ tobi_status tobi_csv_truncate(const char *path, double time, tobi_error *err)
 {
     char *text;
     size_t bytes, n;
-    TOBI_TRY(tobi_plain_read(path, "table", 0, &text, &bytes, err));
+    TOBI_TRY(tobi_plain_read(path, tr("table"), 0, &text, &bytes, err));
     tobi_file file;
     tobi_status status = tobi_file_open(&file, path, err);
     if (status == TOBI_OK) {

@@ -88,7 +88,7 @@ static tobi_status read_list(tobi_results *r, tobi_error *err)
     size_t size;
     if (asprintf(&path, "%s/all.pvd", r->dir) < 0)
         return tobi_fail(err, TOBI_NO_MEMORY, "results %s: out of memory", r->dir);
-    tobi_status status = tobi_plain_read(path, "results", 0, &text, &size, err);
+    tobi_status status = tobi_plain_read(path, tr("results"), 0, &text, &size, err);
     free(path);
     TOBI_TRY(status);
     for (const char *at = text; status == TOBI_OK && (at = strstr(at, "<DataSet "));) {

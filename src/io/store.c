@@ -64,9 +64,10 @@ static herr_t keep_reason(unsigned n, const H5E_error2_t *entry, void *out)
 static tobi_status fail_hdf5(tobi_error *err, tobi_status status, const tobi_store *store, const char *what,
                              const char *name)
 {
-    char reason[256] = "HDF5 gives no reason";
+    char reason[256];
+    snprintf(reason, sizeof reason, "%s", tr("HDF5 gives no reason"));
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_reason, reason);
-    return tobi_fail(err, status, "%s: cannot %s '%s': %s", store->path, what, name, reason);
+    return tobi_fail(err, status, "%s: cannot %s '%s': %s", store->path, tr(what), name, reason);
 }
 
 /* On disk everything is little-endian. */
@@ -131,7 +132,7 @@ static tobi_status create_image(tobi_store *store, tobi_error *err)
     store->file = H5Fcreate(store->path, H5F_ACC_TRUNC, create, access);
     H5Pclose(create);
     H5Pclose(access);
-    return store->file < 0 ? fail_hdf5(err, TOBI_NO_MEMORY, store, "create", store->path) : TOBI_OK;
+    return store->file < 0 ? fail_hdf5(err, TOBI_NO_MEMORY, store, TR("create"), store->path) : TOBI_OK;
 }
 
 tobi_status tobi_store_create(const char *path, tobi_store **store, tobi_error *err)
@@ -196,10 +197,10 @@ static tobi_status write_image(tobi_store *store, tobi_error *err)
     void *image = NULL;
     if (H5Fflush(store->file, H5F_SCOPE_GLOBAL) < 0 ||
         H5Fget_vfd_handle(store->file, H5P_DEFAULT, &image) < 0)
-        return fail_hdf5(err, TOBI_NO_MEMORY, store, "finish", store->path);
+        return fail_hdf5(err, TOBI_NO_MEMORY, store, TR("finish"), store->path);
     /* What is used of the grown memory, counted from behind the seal. */
     ssize_t used = H5Fget_file_image(store->file, NULL, 0);
-    if (used <= 0) return fail_hdf5(err, TOBI_NO_MEMORY, store, "finish", store->path);
+    if (used <= 0) return fail_hdf5(err, TOBI_NO_MEMORY, store, TR("finish"), store->path);
     uint64_t bytes = (uint64_t)used + SEAL_BYTES;
     const unsigned char *start = *(unsigned char **)image;
     seal s = make_seal(start, bytes);
@@ -224,7 +225,7 @@ static tobi_status check_seal(const char *path, int fd, int64_t bytes, tobi_erro
     uint32_t crc = 0;
     ssize_t n = pread(fd, &s, sizeof s, 0);
     if (n < 0)
-        return tobi_fail(err, TOBI_IO, "%s cannot be read to its end: %s", path, strerror(errno));
+        return tobi_fail(err, TOBI_IO, "%s cannot be read to its end: %s", path, tobi_reason(errno));
     if (n >= (ssize_t)sizeof magic && memcmp(s.magic, magic, sizeof magic) != 0)
         return tobi_fail(err, TOBI_DAMAGED,
                          "%s is damaged or not a checkpoint: it does not start with '%.14s'", path, magic);
@@ -239,7 +240,7 @@ static tobi_status check_seal(const char *path, int fd, int64_t bytes, tobi_erro
     int code = sum_file(fd, s.file_bytes, &crc);
     if (code)
         return tobi_fail(err, code == ENOMEM ? TOBI_NO_MEMORY : TOBI_IO, "%s cannot be read to its end: %s",
-                         path, strerror(code));
+                         path, tobi_reason(code));
     if (crc != s.crc)
         return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: its content does not match its checksum", path);
     return TOBI_OK;
@@ -250,7 +251,7 @@ tobi_status tobi_store_open(const char *path, tobi_store **store, tobi_error *er
     *store = NULL;
     FILE *file;
     int64_t bytes;
-    TOBI_TRY(tobi_plain_open(path, "checkpoint", 0, &file, &bytes, err));
+    TOBI_TRY(tobi_plain_open(path, tr("checkpoint"), 0, &file, &bytes, err));
     tobi_status status = check_seal(path, fileno(file), bytes, err);
     fclose(file);
     TOBI_TRY(status);
@@ -260,7 +261,7 @@ tobi_status tobi_store_open(const char *path, tobi_store **store, tobi_error *er
     hid_t access = access_list();
     s->file = H5Fopen(path, H5F_ACC_RDONLY, access);
     H5Pclose(access);
-    if (s->file < 0) status = fail_hdf5(err, TOBI_DAMAGED, s, "open", path);
+    if (s->file < 0) status = fail_hdf5(err, TOBI_DAMAGED, s, TR("open"), path);
     end_quiet(q);
     if (status == TOBI_OK) *store = s;
     else tobi_store_close(s);
@@ -316,9 +317,9 @@ tobi_status tobi_store_put(tobi_store *store, const char *name, tobi_type type, 
     tobi_status status = TOBI_OK;
     hid_t set = create_dataset(store, name, type, n, components);
     if (set < 0 || (n > 0 && H5Dwrite(set, memory_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))
-        status = fail_hdf5(err, TOBI_NO_MEMORY, store, "store", name);
+        status = fail_hdf5(err, TOBI_NO_MEMORY, store, TR("store"), name);
     if (set >= 0 && H5Dclose(set) < 0 && status == TOBI_OK)
-        status = fail_hdf5(err, TOBI_NO_MEMORY, store, "store", name);
+        status = fail_hdf5(err, TOBI_NO_MEMORY, store, TR("store"), name);
     end_quiet(q);
     return status;
 }
@@ -331,7 +332,7 @@ static tobi_status put_value(tobi_store *store, const char *name, hid_t on_disk,
     hid_t space = H5Screate(H5S_SCALAR);
     hid_t attribute = H5Acreate2(store->file, name, on_disk, space, H5P_DEFAULT, H5P_DEFAULT);
     if (attribute < 0 || H5Awrite(attribute, in_memory, value) < 0)
-        status = fail_hdf5(err, TOBI_NO_MEMORY, store, "store", name);
+        status = fail_hdf5(err, TOBI_NO_MEMORY, store, TR("store"), name);
     if (attribute >= 0) H5Aclose(attribute);
     H5Sclose(space);
     return status;
@@ -401,7 +402,7 @@ static tobi_status open_array(tobi_store *store, const char *name, hid_t *set, h
     if (!find_array(store, name))
         return tobi_fail(err, TOBI_DAMAGED, "%s has no array '%s'", store->path, name);
     *set = H5Dopen2(store->file, name, H5P_DEFAULT);
-    if (*set < 0) return fail_hdf5(err, TOBI_DAMAGED, store, "open", name);
+    if (*set < 0) return fail_hdf5(err, TOBI_DAMAGED, store, TR("open"), name);
     hid_t space = H5Dget_space(*set);
     int rank = space < 0 ? -1 : H5Sget_simple_extent_ndims(space);
     size[0] = size[1] = 1;
@@ -445,7 +446,7 @@ static tobi_status read_array(tobi_store *store, const char *name, tobi_type typ
         status = tobi_fail(err, TOBI_DAMAGED, "%s: array '%s' has another number type than expected",
                            store->path, name);
     else if (n > 0 && H5Dread(set, memory_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
-        status = fail_hdf5(err, TOBI_DAMAGED, store, "read", name);
+        status = fail_hdf5(err, TOBI_DAMAGED, store, TR("read"), name);
     if (stored >= 0) H5Tclose(stored);
     H5Dclose(set);
     return status;
@@ -467,7 +468,7 @@ static tobi_status open_value(tobi_store *store, const char *name, H5T_class_t c
     if (H5Aexists(store->file, name) <= 0)
         return tobi_fail(err, TOBI_DAMAGED, "%s has no value '%s'", store->path, name);
     *attribute = H5Aopen(store->file, name, H5P_DEFAULT);
-    if (*attribute < 0) return fail_hdf5(err, TOBI_DAMAGED, store, "open", name);
+    if (*attribute < 0) return fail_hdf5(err, TOBI_DAMAGED, store, TR("open"), name);
     hid_t type = H5Aget_type(*attribute), space = H5Aget_space(*attribute);
     int fits = type >= 0 && space >= 0 && H5Tget_class(type) == class &&
                H5Sget_simple_extent_npoints(space) == 1 && H5Tis_variable_str(type) <= 0;
@@ -487,7 +488,8 @@ static tobi_status get_number(tobi_store *store, const char *name, H5T_class_t c
     size_t bytes;
     tobi_status status = open_value(store, name, class, &attribute, &bytes, err);
     if (status == TOBI_OK) {
-        if (H5Aread(attribute, type, value) < 0) status = fail_hdf5(err, TOBI_DAMAGED, store, "read", name);
+        if (H5Aread(attribute, type, value) < 0) status = fail_hdf5(err, TOBI_DAMAGED, store, TR("read"),
+                                                                    name);
         H5Aclose(attribute);
     }
     end_quiet(q);
@@ -513,7 +515,8 @@ static tobi_status read_text(tobi_store *store, const char *name, char **value, 
     char *text = calloc(bytes + 1, 1);
     tobi_status status = TOBI_OK;
     if (!text) status = tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", store->path);
-    else if (H5Aread(attribute, type, text) < 0) status = fail_hdf5(err, TOBI_DAMAGED, store, "read", name);
+    else if (H5Aread(attribute, type, text) < 0) status = fail_hdf5(err, TOBI_DAMAGED, store, TR("read"),
+                                                                    name);
     H5Tclose(type);
     H5Aclose(attribute);
     if (status == TOBI_OK) *value = text;

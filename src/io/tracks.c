@@ -72,7 +72,7 @@ tobi_status tobi_tracks_read(const char *dir, tobi_moment *m, tobi_error *err)
     TOBI_NEED(m, "the moment");
     if (asprintf(&path, "%s/bodies.csv", dir) < 0)
         return tobi_fail(err, TOBI_NO_MEMORY, "tracks: out of memory");
-    tobi_status status = tobi_plain_read(path, "table of bodies", 0, &text, &size, err);
+    tobi_status status = tobi_plain_read(path, tr("table of bodies"), 0, &text, &size, err);
     free(path);
     if (status == TOBI_NOT_FOUND) return TOBI_OK;
     TOBI_TRY(status);

@@ -72,17 +72,17 @@ static tobi_status open_reader(reader *r, const char *path, tobi_error *err)
 {
     char value[NAME];
     *r = (reader){ .path = path };
-    TOBI_TRY(tobi_plain_read(path, "results", 0, &r->text, &r->size, err));
+    TOBI_TRY(tobi_plain_read(path, tr("results"), 0, &r->text, &r->size, err));
     const char *file = strstr(r->text, "<VTKFile"), *piece = strstr(r->text, "<Piece ");
     const char *appended = strstr(r->text, "<AppendedData encoding=\"raw\">");
     const char *underscore = appended ? strchr(appended, '_') : NULL;
     if (!file || !piece || !strchr(file, '>') || !strchr(piece, '>'))
-        return fail_damaged(r, "is no VTK file of a run", err);
+        return fail_damaged(r, tr("is no VTK file of a run"), err);
     if (underscore) r->body = underscore + 1;
     if (find_attribute(file, "compressor", value)) r->packing = strstr(value, "LZ4") ? LZ4 : ZLIB;
     r->points = find_number(piece, "NumberOfPoints");
     r->polygons = find_number(piece, "NumberOfPolys");
-    if (r->points < 0) return fail_damaged(r, "has no number of points", err);
+    if (r->points < 0) return fail_damaged(r, tr("has no number of points"), err);
     return TOBI_OK;
 }
 
@@ -127,7 +127,7 @@ static int unpack_block(const reader *r, const char *in, size_t packed, char *ou
 /* The bytes of an appended array, `bytes` of them as the head says. */
 static tobi_status read_bytes(const reader *r, const element *e, char *out, size_t bytes, tobi_error *err)
 {
-    const char *cut = "ends too early";
+    const char *cut = tr("ends too early");
     const size_t room = r->body ? r->size - (size_t)(r->body - r->text) : 0;
     if (e->offset > room || room - e->offset < 8) return fail_damaged(r, cut, err);
     const char *at = r->body + e->offset;
@@ -147,7 +147,7 @@ static tobi_status read_bytes(const reader *r, const element *e, char *out, size
         if (packed > left || packed > LARGEST_BLOCK || whole > LARGEST_BLOCK || whole > bytes - done)
             return fail_damaged(r, cut, err);
         if (!unpack_block(r, data, packed, out + done, whole))
-            return fail_damaged(r, "holds a block that cannot be unpacked", err);
+            return fail_damaged(r, tr("holds a block that cannot be unpacked"), err);
         data += packed;
         left -= packed;
         done += whole;
@@ -174,7 +174,7 @@ static tobi_status read_ascii(const reader *r, const element *e, double *out, si
     for (size_t k = 0; k < count; k++) {
         char *end;
         out[k] = strtod(at, &end);
-        if (end == at) return fail_damaged(r, "has fewer numbers than rows", err);
+        if (end == at) return fail_damaged(r, tr("has fewer numbers than rows"), err);
         at = end;
     }
     return TOBI_OK;
@@ -188,7 +188,7 @@ static tobi_status read_numbers(const reader *r, const element *e, int64_t rows,
     const uint64_t most = (uint64_t)r->size*1100;
     *out = NULL;
     if ((uint64_t)rows > most/(uint64_t)e->components)
-        return fail_damaged(r, "says it has more rows than it can hold", err);
+        return fail_damaged(r, tr("says it has more rows than it can hold"), err);
     const size_t count = (size_t)rows*(size_t)e->components, bytes = count*tobi_type_size(e->type);
     char *raw = e->ascii ? NULL : malloc(bytes + 1);
     double *numbers = malloc((count + 1)*sizeof *numbers);
@@ -220,7 +220,7 @@ static tobi_status add_field(const reader *r, const element *e, tobi_moment *m, 
 static tobi_status read_points(const reader *r, const element *e, double (**points)[3], tobi_error *err)
 {
     double *numbers;
-    if (e->components != 3 || *points) return fail_damaged(r, "has points that are none", err);
+    if (e->components != 3 || *points) return fail_damaged(r, tr("has points that are none"), err);
     TOBI_TRY(read_numbers(r, e, r->points, &numbers, err));
     *points = (double (*)[3])(void *)numbers;
     return TOBI_OK;
@@ -235,7 +235,7 @@ static tobi_status read_particles(const reader *r, tobi_moment *m, tobi_error *e
         if (strcmp(e.section, "Points") == 0) TOBI_TRY(read_points(r, &e, &m->positions, err));
         if (strcmp(e.section, "PointData") == 0) TOBI_TRY(add_field(r, &e, m, err));
     }
-    return m->positions ? TOBI_OK : fail_damaged(r, "has no points", err);
+    return m->positions ? TOBI_OK : fail_damaged(r, tr("has no points"), err);
 }
 
 tobi_status tobi_vtu_read(const char *path, tobi_moment *moment, tobi_error *err)
@@ -251,7 +251,7 @@ static tobi_status read_triangles(const reader *r, const element *e, tobi_moment
 {
     double *numbers;
     if (s->triangles || r->polygons < 0 || r->polygons > INT64_MAX/3 || e->components != 1)
-        return fail_damaged(r, "has triangles that are none", err);
+        return fail_damaged(r, tr("has triangles that are none"), err);
     TOBI_TRY(read_numbers(r, e, 3*r->polygons, &numbers, err));
     s->triangles = malloc(((size_t)r->polygons + 1)*sizeof *s->triangles);
     if (!s->triangles) {
@@ -266,7 +266,7 @@ static tobi_status read_triangles(const reader *r, const element *e, tobi_moment
     }
     free(numbers);
     s->triangle_count = r->polygons;
-    return good ? TOBI_OK : fail_damaged(r, "has a triangle of vertices that are none", err);
+    return good ? TOBI_OK : fail_damaged(r, tr("has a triangle of vertices that are none"), err);
 }
 
 static tobi_status read_surface(const reader *r, tobi_moment_surface *s, tobi_error *err)
@@ -279,7 +279,7 @@ static tobi_status read_surface(const reader *r, tobi_moment_surface *s, tobi_er
         if (strcmp(e.section, "Polys") == 0 && strcmp(e.name, "connectivity") == 0)
             TOBI_TRY(read_triangles(r, &e, s, err));
     }
-    return s->vertices && s->triangles ? TOBI_OK : fail_damaged(r, "has no surface", err);
+    return s->vertices && s->triangles ? TOBI_OK : fail_damaged(r, tr("has no surface"), err);
 }
 
 tobi_status tobi_vtp_read(const char *path, tobi_moment_surface *surface, tobi_error *err)

@@ -25,7 +25,7 @@ static tobi_status check_keys(const tobi_solid_def *def, const char **key, tobi_
     return TOBI_OK;
 }
 
-tobi_status mpm_damage_check(const tobi_solid_def *def, double cell, const char **key, char note[200],
+tobi_status mpm_damage_check(const tobi_solid_def *def, double cell, const char **key, char note[TOBI_NOTE],
                              tobi_error *err)
 {
     note[0] = 0;
@@ -37,9 +37,9 @@ tobi_status mpm_damage_check(const tobi_solid_def *def, double cell, const char 
         return tobi_fail(err, TOBI_INVALID, "needs cells smaller than %.4g m, they have %.4g m; larger ones "
                          "hold more elastic energy than a crack of this fracture_energy takes", most, cell);
     if (opening > MOST_CELLS*cell)
-        snprintf(note, 200, "cracks open by %.3g m until they are through; cells of %.3g m lose sight of "
-                 "their faces before, and the energy stays below fracture_energy; cells larger than %.3g m "
-                 "follow them\n", opening, cell, opening/MOST_CELLS);
+        snprintf(note, TOBI_NOTE, tr("cracks open by %.3g m until they are through; cells of %.3g m lose "
+                 "sight of their faces before, and the energy stays below fracture_energy; cells larger than "
+                 "%.3g m follow them\n"), opening, cell, opening/MOST_CELLS);
     return TOBI_OK;
 }
 

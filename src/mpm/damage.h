@@ -8,7 +8,7 @@
 /* TOBI_INVALID if strength and fracture energy do not belong together, or if cells of this size (m) are too
    large for them, eq. (21); TOBI_UNSUPPORTED for models that do not break. The text goes on from the name of
    the key to blame, which *key becomes. note: empty, or what the user should know of such cells. */
-tobi_status mpm_damage_check(const tobi_solid_def *def, double cell, const char **key, char note[200],
+tobi_status mpm_damage_check(const tobi_solid_def *def, double cell, const char **key, char note[TOBI_NOTE],
                              tobi_error *err);
 /* Writes strength and brittleness of a solid on cells of this size (m), eq. (20). */
 void mpm_damage_describe(const tobi_solid_def *def, double cell, mpm_material *material);

@@ -172,7 +172,7 @@ static double limit_dt(const tobi_system *s, int solid, double speed)
                 mpm_material_viscous_dt(d, def->cell*s->smoothing.spacing));
 }
 
-static tobi_status accept_solid(const tobi_system *s, int solid, char note[200], tobi_error *err)
+static tobi_status accept_solid(const tobi_system *s, int solid, char note[TOBI_NOTE], tobi_error *err)
 {
     const tobi_solid *d = &s->solids[solid];
     const double cell = ((const tobi_mlsmpm_def *)s->def)->cell*s->smoothing.spacing;

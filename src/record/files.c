@@ -70,7 +70,7 @@ static tobi_status make_parents(const char *dir, tobi_error *err)
         *p = '\0';
         if (mkdir(path, 0777) != 0 && errno != EEXIST) {
             status =
-                tobi_fail(err, TOBI_IO, "cannot make the directory %s: %s", path, strerror(errno));
+                tobi_fail(err, TOBI_IO, "cannot make the directory %s: %s", path, tobi_reason(errno));
             break;
         }
         *p = end;
@@ -100,12 +100,12 @@ tobi_status tobi_record_open_dir(const char *dir, int *lock, tobi_error *err)
     TOBI_TRY(make_parents(dir, err));
     int fd = open(dir, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (fd < 0)
-        return tobi_fail(err, TOBI_IO, "cannot open the directory %s: %s", dir, strerror(errno));
+        return tobi_fail(err, TOBI_IO, "cannot open the directory %s: %s", dir, tobi_reason(errno));
     *lock = fd;
     TOBI_TRY(check_folders(dir, fd, err));
     if (faccessat(fd, ".", W_OK | X_OK, AT_EACCESS) != 0)
         return tobi_fail(err, TOBI_IO, "cannot write to the directory %s: %s", dir,
-                         strerror(errno));
+                         tobi_reason(errno));
     if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
         return tobi_fail(err, TOBI_IO, "%s: another run is writing to this directory", dir);
     return TOBI_OK;
@@ -161,7 +161,7 @@ static bool remove_one(void *user, const char *path, int kind)
     clear_job *job = user;
     if (job->only_parts && kind != 2) return true;
     if (unlink(path) == 0 || errno == ENOENT) return true;
-    job->status = tobi_fail(job->err, TOBI_IO, "cannot remove %s: %s", path, strerror(errno));
+    job->status = tobi_fail(job->err, TOBI_IO, "cannot remove %s: %s", path, tobi_reason(errno));
     return false;
 }
 

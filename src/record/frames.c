@@ -156,9 +156,9 @@ static tobi_status take_tracks(tobi_run *run, tobi_moment *m, tobi_error *err)
 static tobi_status note_camera(tobi_run *run, const tobi_drawing *d, int view, tobi_error *err)
 {
     const char *body = tobi_drawing_body_around(d);
-    char text[200];
+    char text[TOBI_NOTE];
     if (!body) return TOBI_OK;
-    snprintf(text, sizeof text, "is inside of the body '%s', which hides all else from it\n", body);
+    snprintf(text, sizeof text, tr("is inside of the body '%s', which hides all else from it\n"), body);
     return tobi_world_add_notes(run->world, "camera of", run->view[view].name, text, err);
 }
 

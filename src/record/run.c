@@ -75,7 +75,7 @@ static tobi_status read_scene(tobi_run *run, tobi_error *err)
 {
     size_t size;
     char *path = tobi_record_path(run->dir, "resolved.json");
-    tobi_status status = path ? tobi_plain_read(path, "scene", 0, &run->resolved, &size, err)
+    tobi_status status = path ? tobi_plain_read(path, tr("scene"), 0, &run->resolved, &size, err)
                               : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
     free(path);
     return status == TOBI_NOT_FOUND ? TOBI_OK : status;
@@ -101,19 +101,20 @@ static void tell_losses(tobi_run *run)
         { run->porous, "porous_zones.csv" }, { run->scalars, "scalars.csv" } };
     char *at = run->losses, *end = at + sizeof run->losses;
     *at = '\0';
-    if (run->lost_dir) at += snprintf(at, (size_t)(end - at), "the directory was deleted and made again; ");
+    if (run->lost_dir) at += snprintf(at, (size_t)(end - at),
+                                      tr("the directory was deleted and made again; "));
     for (size_t k = 0; k < sizeof tables/sizeof *tables; k++)
         if (tables[k].csv && tobi_csv_has_lost(tables[k].csv))
-            at += snprintf(at, (size_t)(end - at), "%s was deleted and begins anew; ", tables[k].name);
+            at += snprintf(at, (size_t)(end - at), tr("%s was deleted and begins anew; "), tables[k].name);
     if (run->history_missing > 0)
-        at += snprintf(at, (size_t)(end - at), "history.csv lacks rows of earlier outputs: %lld; ",
+        at += snprintf(at, (size_t)(end - at), tr("history.csv lacks rows of earlier outputs: %lld; "),
                        (long long)run->history_missing);
     at += tobi_trouble_write(run, at, (size_t)(end - at));
     const int64_t missing = run->missing - run->trouble[TOBI_KIND_PARTICLES].files -
                             run->trouble[TOBI_KIND_SURFACES].files;      /* said already */
     if (missing > 0)
         at += snprintf(at, (size_t)(end - at),
-                       "missing files of earlier outputs: %lld (the lists, *.pvd, leave them out); ",
+                       tr("missing files of earlier outputs: %lld (the lists, *.pvd, leave them out); "),
                        (long long)missing);
     if (at > run->losses) at[-2] = '\0';
 }
@@ -172,7 +173,7 @@ static tobi_status resume(tobi_run *run, tobi_error *err)
     TOBI_TRY(read_scene(run, err));
     TOBI_TRY(tobi_state_load(run, &found, err));
     if (!found) {
-        snprintf(run->note, sizeof run->note, "no checkpoint in %s: beginning again at t = 0",
+        snprintf(run->note, sizeof run->note, tr("no checkpoint in %s: beginning again at t = 0"),
                  run->dir);
         TOBI_TRY(tobi_world_start(run->world, err));
         return begin(run, err);

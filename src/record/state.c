@@ -143,7 +143,7 @@ static void drop_old(const tobi_run *run, int64_t newest)
 static tobi_status sync_files(const tobi_run *run, tobi_error *err)
 {
     if (syncfs(run->lock) == 0) return TOBI_OK;
-    return tobi_fail(err, TOBI_IO, "cannot write the results in %s: %s", run->dir, strerror(errno));
+    return tobi_fail(err, TOBI_IO, "cannot write the results in %s: %s", run->dir, tobi_reason(errno));
 }
 
 tobi_status tobi_state_save(tobi_run *run, tobi_error *err)
@@ -180,7 +180,7 @@ static tobi_status read_companion(tobi_run *run, const char *path, tobi_error *e
 {
     char *text;
     size_t size;
-    tobi_plain_read(path, "checkpoint", COMPANION_LIMIT, &text, &size, NULL);
+    tobi_plain_read(path, tr("checkpoint"), COMPANION_LIMIT, &text, &size, NULL);
     json_t *json = text ? json_loadb(text, size, 0, NULL) : NULL;
     json_t *since = NULL, *total = NULL, *bodies = NULL, *solids = NULL, *sensors = NULL, *aside = NULL,
            *works = NULL;
@@ -233,9 +233,9 @@ tobi_status tobi_state_load(tobi_run *run, bool *found, tobi_error *err)
         if (status != TOBI_OK) continue;
         run->checkpoint_step = steps[k];
         run->checkpoint_outputs = run->outputs;
-        snprintf(run->note, sizeof run->note, "resumed at t = %.9g s, step %lld%s%.800s",
+        snprintf(run->note, sizeof run->note, tr("resumed at t = %.9g s, step %lld%s%.800s"),
                  tobi_world_time(run->world), (long long)steps[k],
-                 k ? "; a newer checkpoint is damaged: " : "", first.text);
+                 k ? tr("; a newer checkpoint is damaged: ") : "", first.text);
         return TOBI_OK;
     }
     if (count == 0) return TOBI_OK;

@@ -149,7 +149,7 @@ static int64_t count_missing(const tobi_run *run)
     char *path = tobi_record_path(run->dir, "history.csv"), *text = NULL;
     size_t bytes;
     int64_t rows = -1;      /* the header */
-    if (path && tobi_plain_read(path, "table", 0, &text, &bytes, NULL) == TOBI_OK)
+    if (path && tobi_plain_read(path, tr("table"), 0, &text, &bytes, NULL) == TOBI_OK)
         for (size_t k = 0; k < bytes; k++) rows += text[k] == '\n';
     free(text);
     free(path);

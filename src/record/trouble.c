@@ -5,13 +5,13 @@
 #include <stdlib.h>
 
 static const struct { const char *name; bool per_output; } kinds[TOBI_KINDS] = {
-    [TOBI_KIND_PARTICLES] = { "files of particles", true },
-    [TOBI_KIND_SURFACES] = { "surfaces", true },
-    [TOBI_KIND_COPIES] = { "STL, PLY and OBJ files", true },
-    [TOBI_KIND_PICTURES] = { "pictures", true },
-    [TOBI_KIND_LISTS] = { "lists (*.pvd)", false },
-    [TOBI_KIND_TABLES] = { "rows of tables", false },
-    [TOBI_KIND_CHECKPOINTS] = { "the last checkpoint", false },
+    [TOBI_KIND_PARTICLES] = { TR("files of particles"), true },
+    [TOBI_KIND_SURFACES] = { TR("surfaces"), true },
+    [TOBI_KIND_COPIES] = { TR("STL, PLY and OBJ files"), true },
+    [TOBI_KIND_PICTURES] = { TR("pictures"), true },
+    [TOBI_KIND_LISTS] = { TR("lists (*.pvd)"), false },
+    [TOBI_KIND_TABLES] = { TR("rows of tables"), false },
+    [TOBI_KIND_CHECKPOINTS] = { TR("the last checkpoint"), false },
     [TOBI_KIND_SUMMARY] = { "summary.json", false },
 };
 
@@ -19,13 +19,15 @@ static const struct { const char *name; bool per_output; } kinds[TOBI_KINDS] = {
 static void tell(tobi_run *run, tobi_record_kind kind, const char *reason)
 {
     static const char *const what[TOBI_KINDS] = {
-        [TOBI_KIND_LISTS] = "; the list of before stays", [TOBI_KIND_TABLES] = "; its rows wait for room",
-        [TOBI_KIND_CHECKPOINTS] = "; the checkpoint of before stays",
+        [TOBI_KIND_LISTS] = TR("; the list of before stays"),
+        [TOBI_KIND_TABLES] = TR("; its rows wait for room"),
+        [TOBI_KIND_CHECKPOINTS] = TR("; the checkpoint of before stays"),
     };
     char *text = NULL;
     if (run->trouble[kind].told) return;
     run->trouble[kind].told = true;
-    if (asprintf(&text, "%s%s; the run goes on", reason, what[kind] ? what[kind] : ": left out") < 0) return;
+    if (asprintf(&text, tr("%s%s; the run goes on"), reason, what[kind] ? tr(what[kind])
+                 : tr(": left out")) < 0) return;
     run->told[run->told_count] = text;
     __atomic_store_n(&run->told_count, run->told_count + 1, __ATOMIC_RELEASE);
 }
@@ -41,7 +43,7 @@ tobi_status tobi_trouble_pass(tobi_run *run, tobi_record_kind kind, int64_t outp
         if (t->files == 0) t->first = output;
         t->last = output;
         t->files = kinds[kind].per_output ? t->files + 1 : 1;
-        tell(run, kind, err ? err->text : "a file cannot be written");
+        tell(run, kind, err ? err->text : tr("a file cannot be written"));
     } else if (!kinds[kind].per_output) t->files = 0;
     pthread_mutex_unlock(&run->trouble_lock);
     return TOBI_OK;
@@ -73,11 +75,12 @@ int tobi_trouble_write(tobi_run *run, char *text, size_t room)
         if (files == 0 || at >= (int)room - 1) continue;
         const size_t left = room - (size_t)at;
         if (kinds[k].per_output)
-            at += snprintf(text + at, left, "%s not written: %lld, of outputs %lld to %lld; ", kinds[k].name,
+            at += snprintf(text + at, left, tr("%s not written: %lld, of outputs %lld to %lld; "),
+                           tr(kinds[k].name),
                            files, (long long)t->first, (long long)t->last);
         else if (k == TOBI_KIND_TABLES)
-            at += snprintf(text + at, left, "%s not written: %lld; ", kinds[k].name, files);
-        else at += snprintf(text + at, left, "not written: %s; ", kinds[k].name);
+            at += snprintf(text + at, left, tr("%s not written: %lld; "), tr(kinds[k].name), files);
+        else at += snprintf(text + at, left, tr("not written: %s; "), tr(kinds[k].name));
     }
     return at < (int)room ? at : (int)room - 1;
 }

@@ -123,15 +123,15 @@ static tobi_status check_flow_columns(const reader *r, tobi_error *err)
     int others = 0;
     for (int c = X; c < SPEED; c++) others += r->given[c];
     if (others || r->given[SPEED] + r->given[RATE] != 1)
-        return fail_here(r, err, "a flow has the columns time (s) and one of speed (m/s) and flow_rate "
-                         "(m3/s)", "");
+        return fail_here(r, err, tr("a flow has the columns time (s) and one of speed (m/s) and flow_rate "
+                         "(m3/s)"), "");
     return TOBI_OK;
 }
 
 static const char *motor_columns(const reader *r)
 {
-    return r->slides ? "position (m), speed (m/s) and force (N), as it is of a guide"
-                     : "angle (degrees), speed (degrees/s) and torque (N m)";
+    return r->slides ? tr("position (m), speed (m/s) and force (N), as it is of a guide")
+                     : tr("angle (degrees), speed (degrees/s) and torque (N m)");
 }
 
 static tobi_status check_columns(const reader *r, tobi_error *err)
@@ -139,20 +139,21 @@ static tobi_status check_columns(const reader *r, tobi_error *err)
     const int *g = r->given;
     int quaternion = g[QW] + g[QX] + g[QY] + g[QZ], axis = g[AX] + g[AY] + g[AZ] + g[ANGLE];
     int angles = g[ROLL] + g[PITCH] + g[YAW];
-    if (!g[TIME]) return fail_here(r, err, "there is no column \"time\"", "");
+    if (!g[TIME]) return fail_here(r, err, tr("there is no column \"time\""), "");
     if (is_flow(r)) return check_flow_columns(r, err);
     if (is_motor(r) && g[ANGLE] + g[POSITION] + g[SPEED] + g[TORQUE] + g[FORCE] == 1) return TOBI_OK;
     if (is_motor(r))
-        return fail_here(r, err, "a motor has the columns time (s) and one of ", motor_columns(r));
+        return fail_here(r, err, tr("a motor has the columns time (s) and one of "), motor_columns(r));
     if (is_gravity(r) && quaternion + axis + angles)
-        return fail_here(r, err, "gravity does not turn: allowed are time (s), x, y and z (m/s2)", "");
+        return fail_here(r, err, tr("gravity does not turn: allowed are time (s), x, y and z (m/s2)"), "");
     if ((quaternion && quaternion < 4) || (axis && axis < 4))
-        return fail_here(r, err, "a turn needs all of ", quaternion ? "qw, qx, qy, qz" : "ax, ay, az, angle");
+        return fail_here(r, err, tr("a turn needs all of "), quaternion ? "qw, qx, qy, qz"
+                         : "ax, ay, az, angle");
     if (!!quaternion + !!axis + !!angles > 1)
-        return fail_here(r, err, "a turn is given twice: allowed is one of qw qx qy qz, ax ay az angle and "
-                         "roll pitch yaw", "");
+        return fail_here(r, err, tr("a turn is given twice: allowed is one of qw qx qy qz, ax ay az angle "
+                         "and roll pitch yaw"), "");
     if (g[X] + g[Y] + g[Z] + quaternion + axis + angles == 0)
-        return fail_here(r, err, "no column says where the body is: x, y, z or a turn is needed", "");
+        return fail_here(r, err, tr("no column says where the body is: x, y, z or a turn is needed"), "");
     return TOBI_OK;
 }
 
@@ -185,7 +186,7 @@ static tobi_status read_unit(const reader *r, char *text, char closing, column c
     const unit *units = column_units(r, c);
     size_t n = strlen(text);
     if (n < 2 || text[n - 1] != closing)
-        return fail_here(r, err, closing == ']' ? "no ] after the unit [" : "no ) after the unit (",
+        return fail_here(r, err, closing == ']' ? tr("no ] after the unit [") : tr("no ) after the unit ("),
                          tobi_excerpt(text).text);
     text[n - 1] = 0;
     char all[80] = "";
@@ -207,20 +208,20 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
     for (char *field; (field = next_field(r, &rest)) != NULL;) {
         char closing = 0, *text = split_unit(field, &closing);
         double scale = 1;
-        if (!*field) return fail_here(r, err, "an empty column name (a comma too many?)", "");
+        if (!*field) return fail_here(r, err, tr("an empty column name (a comma too many?)"), "");
         int found = strcasecmp(field, "t") == 0 ? TIME : COLUMNS;
         for (int c = 0; c < COLUMNS && found == COLUMNS; c++)
             if (is_allowed(r, c) && strcasecmp(field, column_names[c]) == 0) found = c;
         if (found == COLUMNS)
             return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: there is no column \"%s\"; allowed are "
                              "time (s)%s%s", r->what, r->path, (long long)r->line, tobi_excerpt(field).text,
-                             is_flow(r) ? ", speed (m/s) and flow_rate (m3/s)"
-                             : is_motor(r) ? " and one of "
+                             is_flow(r) ? tr(", speed (m/s) and flow_rate (m3/s)")
+                             : is_motor(r) ? tr(" and one of ")
                              : is_gravity(r) ? ", x, y, z (m/s2)"
-                             : ", x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, pitch, yaw "
-                               "(degrees)", is_motor(r) ? motor_columns(r) : "");
+                             : tr(", x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, pitch, yaw "
+                               "(degrees)"), is_motor(r) ? motor_columns(r) : "");
         if (text) TOBI_TRY(read_unit(r, text, closing, found, &scale, err));
-        if (r->given[found]++) return fail_here(r, err, "a column comes twice: ", column_names[found]);
+        if (r->given[found]++) return fail_here(r, err, tr("a column comes twice: "), column_names[found]);
         r->scale[r->fields] = scale;
         r->meaning[r->fields++] = found;      /* no more than COLUMNS, since none comes twice */
     }
@@ -239,7 +240,7 @@ static tobi_status read_numbers(const reader *r, char *line, double value[COLUMN
             return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: \"%s\" in column %s is no finite "
                              "number%s", r->what, r->path, (long long)r->line, tobi_excerpt(field).text,
                              column_names[r->meaning[n]],
-                             end > field && *end == ',' ? "; decimals follow a point" : "");
+                             end > field && *end == ',' ? tr("; decimals follow a point") : "");
         if (fabs(x) > LARGEST)
             return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: %.4g in column %s is too large; allowed "
                              "is up to %g", r->what, r->path, (long long)r->line, x,
@@ -248,7 +249,7 @@ static tobi_status read_numbers(const reader *r, char *line, double value[COLUMN
     }
     if (n == r->fields && !field) return TOBI_OK;
     return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: the row has %s columns than the header, %d",
-                     r->what, r->path, (long long)r->line, field ? "more" : "fewer", r->fields);
+                     r->what, r->path, (long long)r->line, field ? tr("more") : tr("fewer"), r->fields);
 }
 
 static tobi_status read_turn(const reader *r, const double v[COLUMNS], double q[4], tobi_error *err)
@@ -257,13 +258,13 @@ static tobi_status read_turn(const reader *r, const double v[COLUMNS], double q[
     if (r->given[QW]) {
         double length = sqrt(v[QW]*v[QW] + v[QX]*v[QX] + v[QY]*v[QY] + v[QZ]*v[QZ]);
         if (!(length > 1e-100) || !isfinite(length))
-            return fail_here(r, err, "the quaternion has no length", "");
+            return fail_here(r, err, tr("the quaternion has no length"), "");
         for (int k = 0; k < 4; k++) q[k] = v[QW + k]/length;
     } else if (r->given[AX]) {
         double axis[3] = {v[AX], v[AY], v[AZ]};
         double length = sqrt(axis[0]*axis[0] + axis[1]*axis[1] + axis[2]*axis[2]);
         if (!isfinite(length) || (!(length > 1e-100) && v[ANGLE] != 0))
-            return fail_here(r, err, "the axis ax, ay, az has no length", "");
+            return fail_here(r, err, tr("the axis ax, ay, az has no length"), "");
         from_vector(axis, length > 1e-100 ? fmod(v[ANGLE], 360)*DEGREE/length : 0, q);
     } else {
         for (int a = 0; a < 3; a++) {      /* roll first, so it stands rightmost */
@@ -296,7 +297,8 @@ static tobi_status check_rates(const reader *r, const keyframe *k, tobi_error *e
         int turns = fabs(velocity[a]) <= LARGEST;
         return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: from %.10g s of the row before to %.10g s "
                          "the body %s too fast; allowed is up to %g %s", r->what, r->path, (long long)r->line,
-                         k[0].time, k[1].time, turns ? "turns" : "moves", LARGEST, turns ? "rad/s" : "m/s");
+                         k[0].time, k[1].time, turns ? tr("turns") : tr("moves"), LARGEST, turns ? "rad/s"
+                         : "m/s");
     }
     return TOBI_OK;
 }
@@ -312,13 +314,13 @@ static tobi_status add_row(tobi_keyframes *f, int64_t *room, const reader *r, ch
     if (is_motor(r))
         row.shift[0] = value[ANGLE] + value[POSITION] + value[SPEED] + value[TORQUE] + value[FORCE];
     if (is_flow(r) && row.shift[0] < 0)
-        return fail_here(r, err, "the flow is below 0: an inlet lets nothing out", "");
+        return fail_here(r, err, tr("the flow is below 0: an inlet lets nothing out"), "");
     TOBI_TRY(read_turn(r, value, row.turn, err));
     if (f->count && !(row.time > f->rows[f->count - 1].time))
         return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: time %.10g s does not come after %.10g s of "
                          "the row before", r->what, r->path, (long long)r->line, row.time,
                          f->rows[f->count - 1].time);
-    if (f->count == MOST_ROWS) return fail_here(r, err, "more rows than are allowed, 20 million", "");
+    if (f->count == MOST_ROWS) return fail_here(r, err, tr("more rows than are allowed, 20 million"), "");
     if (f->count == *room) {
         keyframe *more = realloc(f->rows, (size_t)(2**room + 64)*sizeof *more);
         if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "%s %s: out of memory", r->what, r->path);
@@ -341,7 +343,8 @@ static tobi_status read_rows(FILE *file, reader *r, tobi_keyframes *f, tobi_erro
         if (r->line == 1 && n >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) text += 3;   /* byte order mark */
         text += strspn(text, " \r\n");
         if (strlen(line) != (size_t)n)
-            status = fail_here(r, err, "holds a zero byte: no plain text, or UTF-16; save it as UTF-8", "");
+            status = fail_here(r, err, tr("holds a zero byte: no plain text, or UTF-16; save it as UTF-8"),
+                               "");
         else if (!*text || *text == '#') continue;
         else if (!r->fields) status = read_header(r, text, err);
         else status = add_row(f, &room, r, text, err);
@@ -349,7 +352,7 @@ static tobi_status read_rows(FILE *file, reader *r, tobi_keyframes *f, tobi_erro
     free(line);
     if (status == TOBI_OK && ferror(file))
         status = tobi_fail(err, TOBI_IO, "%s %s: cannot be read to its end: %s", r->what,
-                           r->path, strerror(errno));
+                           r->path, tobi_reason(errno));
     if (status == TOBI_OK && !f->count)
         status = tobi_fail(err, TOBI_INVALID, "%s %s: no rows; a header with the columns' names and "
                            "a row per time are needed", r->what, r->path);
@@ -462,13 +465,13 @@ static tobi_status load(reader *r, tobi_keyframes **out, tobi_error *err)
 
 tobi_status tobi_keyframes_load(const char *path, tobi_keyframes **out, tobi_error *err)
 {
-    reader r = {.what = "keyframes", .path = path};
+    reader r = {.what = tr("keyframes"), .path = path};
     return load(&r, out, err);
 }
 
 tobi_status tobi_keyframes_load_gravity(const char *path, int given[3], tobi_keyframes **out, tobi_error *err)
 {
-    reader r = {.what = "gravity", .path = path};
+    reader r = {.what = tr("gravity"), .path = path};
     TOBI_TRY(load(&r, out, err));
     for (int a = 0; a < 3; a++) given[a] = r.given[X + a];
     return TOBI_OK;
@@ -476,7 +479,7 @@ tobi_status tobi_keyframes_load_gravity(const char *path, int given[3], tobi_key
 
 tobi_status tobi_keyframes_load_flow(const char *path, int *is_rate, tobi_keyframes **out, tobi_error *err)
 {
-    reader r = {.what = "flow", .path = path};
+    reader r = {.what = tr("flow"), .path = path};
     TOBI_TRY(load(&r, out, err));
     *is_rate = r.given[RATE];
     return TOBI_OK;
@@ -485,7 +488,7 @@ tobi_status tobi_keyframes_load_flow(const char *path, int *is_rate, tobi_keyfra
 tobi_status tobi_keyframes_load_motor(const char *path, int slides, int *column, tobi_keyframes **out,
                                       tobi_error *err)
 {
-    reader r = {.what = "motor", .path = path, .slides = slides};
+    reader r = {.what = tr("motor"), .path = path, .slides = slides};
     TOBI_TRY(load(&r, out, err));
     *column = r.given[SPEED] ? 0 : r.given[ANGLE] || r.given[POSITION] ? 1 : 2;
     return TOBI_OK;

@@ -117,7 +117,7 @@ tobi_status tobi_motion_oscillation(const double direction[3], double amplitude_
     *out = NULL;
     TOBI_NEED(direction, "the direction");
     double unit[3], numbers[3] = { amplitude_m, frequency_hz, phase_deg };
-    TOBI_TRY(check_finite("amplitude, frequency and phase", numbers, 3, err));
+    TOBI_TRY(check_finite(tr("amplitude, frequency and phase"), numbers, 3, err));
     TOBI_TRY(set_direction("direction", direction, unit, err));
     TOBI_TRY(make(KIND_OSCILLATION, out, err));
     for (int a = 0; a < 3; a++) (*out)->vector[a] = unit[a];
@@ -169,8 +169,8 @@ tobi_status tobi_motion_sum(tobi_motion *const *parts, int count, tobi_motion **
         TOBI_NEED(parts[k], "a motion");
         if (parts[k]->kind == KIND_SUM || (k > 0 && !tobi_motion_is_rigid(parts[k])))
             return tobi_fail(err, TOBI_INVALID, "motion: number %d %s", k + 1,
-                             parts[k]->kind == KIND_SUM ? "is a sum already"
-                                                        : "changes the shape; only the first may");
+                             parts[k]->kind == KIND_SUM ? tr("is a sum already")
+                                                        : tr("changes the shape; only the first may"));
     }
     tobi_motion **own = calloc((size_t)count, sizeof *own);
     if (!own) return tobi_fail(err, TOBI_NO_MEMORY, "motion: out of memory");
@@ -216,14 +216,14 @@ tobi_status tobi_motion_wave_maker(const tobi_wave_maker_def *def, tobi_motion *
                                def->solitary_height, def->significant_height, def->peak_period,
                                def->peakedness, def->hinge_height, def->start, def->ramp,
                                def->absorb_period };
-    TOBI_TRY(check_finite("every number of a wave maker", numbers, sizeof numbers/sizeof *numbers, err));
+    TOBI_TRY(check_finite(tr("every number of a wave maker"), numbers, sizeof numbers/sizeof *numbers, err));
     TOBI_TRY(check_finite("hinge", def->hinge, 3, err));
     TOBI_TRY(set_direction("direction", def->direction, along, err));
     if (def->flap) {
         TOBI_TRY(set_direction("up", def->up, up, err));
         for (int a = 0; a < 3; a++)
             axis[a] = up[(a + 1)%3]*along[(a + 2)%3] - up[(a + 2)%3]*along[(a + 1)%3];
-        TOBI_TRY(set_direction("direction, across up,", axis, axis, err));
+        TOBI_TRY(set_direction(tr("direction, across up,"), axis, axis, err));
     }
     TOBI_TRY(tobi_waves_create(def, &waves, err));
     const tobi_status status = make(def->flap ? KIND_FLAP : KIND_PISTON, out, err);

@@ -45,7 +45,7 @@ static tobi_status note_overlaps(tobi_dynamics_state *d, char *notes, size_t roo
 {
     enum { NAMED = 5 };
     int found = 0, unsure = 0;
-    char line[300], whole[400];
+    char line[TOBI_NOTE], whole[2*TOBI_NOTE];
     TOBI_TRY(tobi_broad_find(&d->broad, d->bodies, d->shapes, d->count, 0, err));
     for (int64_t k = 0; k < d->broad.pair_count; k++) {
         int a = d->broad.pairs[k].a, b = d->broad.pairs[k].b, searched;
@@ -53,23 +53,24 @@ static tobi_status note_overlaps(tobi_dynamics_state *d, char *notes, size_t roo
         double deep = find_overlap(d, a, b);
         TOBI_TRY(check_overlap(d, a, b, deep, &searched, err));
         if (!searched && ++unsure <= NAMED) {
-            snprintf(whole, sizeof whole, "'%s' lies so close to body '%s' over so large an area that not "
-                     "all places were searched for overlaps at the start", d->bodies[a].name,
+            snprintf(whole, sizeof whole, tr("'%s' lies so close to body '%s' over so large an area that not "
+                     "all places were searched for overlaps at the start"), d->bodies[a].name,
                      d->bodies[b].name);
             note(notes, room, whole);
         }
         if (deep == 0 || ++found > NAMED) continue;
-        snprintf(line, sizeof line, "overlaps body '%s' by %.3g m at the start; contact pushes them apart",
+        snprintf(line, sizeof line,
+                 tr("overlaps body '%s' by %.3g m at the start; contact pushes them apart"),
                  d->bodies[b].name, deep);
         snprintf(whole, sizeof whole, "'%s' %s", d->bodies[a].name, line);
         note(notes, room, whole);
     }
     if (found > NAMED) {
-        snprintf(line, sizeof line, "%d more pairs of bodies overlap at the start", found - NAMED);
+        snprintf(line, sizeof line, tr("%d more pairs of bodies overlap at the start"), found - NAMED);
         note(notes, room, line);
     }
     if (unsure > NAMED) {
-        snprintf(line, sizeof line, "%d more pairs of bodies were not searched for overlaps to the end",
+        snprintf(line, sizeof line, tr("%d more pairs of bodies were not searched for overlaps to the end"),
                  unsure - NAMED);
         note(notes, room, line);
     }
@@ -79,17 +80,17 @@ static tobi_status note_overlaps(tobi_dynamics_state *d, char *notes, size_t roo
 
 static void note_shapes(const tobi_dynamics_state *d, char *notes, size_t room)
 {
-    char line[300];
+    char line[TOBI_NOTE];
     for (int k = 0; k < d->count; k++) {
         const tobi_body *b = &d->bodies[k];
         const tobi_facets *f = &d->shapes[k].facets;
         if (!d->shapes[k].solid)
-            snprintf(line, sizeof line, "'%s' deforms and is no prism along z: bodies pass through it",
+            snprintf(line, sizeof line, tr("'%s' deforms and is no prism along z: bodies pass through it"),
                      b->name);
         else if (f->ball > 0)
             snprintf(line, sizeof line,
-                     "'%s' is taken for a ball of radius %.6g m in contact with bodies and sides; its faces "
-                     "lie up to %.2g m below", b->name, f->ball, f->ball_gap);
+                     tr("'%s' is taken for a ball of radius %.6g m in contact with bodies and sides; its "
+                     "faces lie up to %.2g m below"), b->name, f->ball, f->ball_gap);
         else continue;
         note(notes, room, line);
     }
@@ -98,7 +99,7 @@ static void note_shapes(const tobi_dynamics_state *d, char *notes, size_t room)
 static void note_planes(tobi_dynamics_state *d, char *notes, size_t room)
 {
     for (int k = 0; k < d->count; k++) {
-        char line[300];
+        char line[TOBI_NOTE];
         double deepest = 0;
         d->contacts.count = 0;
         tobi_dynamics_touch_planes(d, k, 0, &d->contacts);
@@ -107,7 +108,7 @@ static void note_planes(tobi_dynamics_state *d, char *notes, size_t room)
                 deepest = fmax(deepest, -d->contacts.at[i].gap);
         if (deepest == 0) continue;
         snprintf(line, sizeof line,
-                 "'%s' reaches %.3g m behind a side or plane at the start; contact pushes it back",
+                 tr("'%s' reaches %.3g m behind a side or plane at the start; contact pushes it back"),
                  d->bodies[k].name, deepest);
         note(notes, room, line);
     }

@@ -40,7 +40,7 @@ struct tobi_script {
     char hold[64];                  /* the last answer of control                                     */
 };
 
-static const char *const role_name[] = { "motion script", "control script", "flow script" };
+static const char *const role_name[] = { TR("motion script"), TR("control script"), TR("flow script") };
 
 /* --- the process -------------------------------------------------------------------------- */
 
@@ -91,15 +91,15 @@ static void end_process(tobi_script *s, bool silent)
     s->process = 0;
     if (s->channel->reply == TOBI_REPLY_LATE) {
         copy_text(where, s->channel->text, sizeof where);
-        snprintf(s->why, sizeof s->why, "%sendless loop? stopped after %g s of processor time%s", where,
-                 s->seconds, where[0] ? "" : ", inside one call of a function such as table.sort");
+        snprintf(s->why, sizeof s->why, tr("%sendless loop? stopped after %g s of processor time%s"), where,
+                 s->seconds, where[0] ? "" : tr(", inside one call of a function such as table.sort"));
     } else if (silent) {
-        snprintf(s->why, sizeof s->why, "its process did not answer for %g s", PATIENCE*s->seconds);
+        snprintf(s->why, sizeof s->why, tr("its process did not answer for %g s"), PATIENCE*s->seconds);
     } else if (reaped > 0 && WIFSIGNALED(state)) {
-        snprintf(s->why, sizeof s->why, "its process was ended by signal %d (%s)", WTERMSIG(state),
+        snprintf(s->why, sizeof s->why, tr("its process was ended by signal %d (%s)"), WTERMSIG(state),
                  strsignal(WTERMSIG(state)));
     } else {
-        snprintf(s->why, sizeof s->why, "its process has ended");
+        snprintf(s->why, sizeof s->why, tr("its process has ended"));
     }
 }
 
@@ -116,7 +116,7 @@ static const char *take_reply(tobi_script *s)
     }
     if (c->reply == TOBI_REPLY_DONE) return NULL;
     if (c->reply == TOBI_REPLY_FULL)
-        snprintf(s->why, sizeof s->why, "needs more memory than a script may have, %d MiB",
+        snprintf(s->why, sizeof s->why, tr("needs more memory than a script may have, %d MiB"),
                  TOBI_SCRIPT_MEMORY >> 20);
     else copy_text(s->why, c->text, sizeof c->text);
     return s->why;
@@ -125,7 +125,7 @@ static const char *take_reply(tobi_script *s)
 static const char *ask(tobi_script *s, tobi_script_request request)
 {
     char byte = 0;
-    if (s->loader != getpid()) return "only the process that loaded it can ask it";
+    if (s->loader != getpid()) return tr("only the process that loaded it can ask it");
     if (s->fd < 0) return s->why;
     s->channel->request = request;
     s->channel->reply = TOBI_REPLY_NONE;
@@ -136,7 +136,7 @@ static const char *ask(tobi_script *s, tobi_script_request request)
 static tobi_status fail_start(const tobi_script *s, tobi_error *err)
 {
     return tobi_fail(err, errno == ENOMEM ? TOBI_NO_MEMORY : TOBI_IO, "%s: its process cannot start: %s",
-                     s->label, strerror(errno));
+                     s->label, tobi_reason(errno));
 }
 
 /* Forks. Signals wait meanwhile, so that none is handled twice. */
@@ -170,7 +170,7 @@ static tobi_status load(tobi_script *s, const json_t *params, tobi_error *err)
 {
     char *text;
     size_t length;
-    TOBI_TRY(tobi_plain_read(s->path, role_name[s->role], FILE_LIMIT, &text, &length, err));
+    TOBI_TRY(tobi_plain_read(s->path, tr(role_name[s->role]), FILE_LIMIT, &text, &length, err));
     const char *slash = strrchr(s->path, '/'), *file = slash ? slash + 1 : s->path;
     char *name = malloc(strlen(file) + 2);
     tobi_status status = TOBI_OK;
@@ -192,7 +192,7 @@ static tobi_status load(tobi_script *s, const json_t *params, tobi_error *err)
 static tobi_script *create(const char *path, tobi_script_role role, double seconds)
 {
     tobi_script *s = calloc(1, sizeof *s);
-    size_t room = strlen(role_name[role]) + strlen(path) + 2;
+    size_t room = strlen(tr(role_name[role])) + strlen(path) + 2;
     if (!s || !(s->label = malloc(room))) {
         free(s);
         return NULL;
@@ -200,8 +200,8 @@ static tobi_script *create(const char *path, tobi_script_role role, double secon
     s->fd = -1;
     s->role = role;
     s->seconds = seconds;
-    snprintf(s->label, room, "%s %s", role_name[role], path);
-    s->path = s->label + strlen(role_name[role]) + 1;
+    snprintf(s->label, room, "%s %s", tr(role_name[role]), path);
+    s->path = s->label + strlen(tr(role_name[role])) + 1;
     return s;
 }
 
@@ -217,8 +217,8 @@ tobi_status tobi_script_load_within(const char *path, const char *params_json, t
     json_t *params = json_loads(params_json ? params_json : "{}", 0, &where);
     if (!json_is_object(params)) {
         json_decref(params);
-        return tobi_fail(err, TOBI_INVALID, "%s params: %s", role_name[role],
-                         params ? "must be a JSON object" : where.text);
+        return tobi_fail(err, TOBI_INVALID, "%s params: %s", tr(role_name[role]),
+                         params ? tr("must be a JSON object") : where.text);
     }
     tobi_script *s = create(path, role, seconds);
     tobi_status status = s ? load(s, params, err)
@@ -296,7 +296,8 @@ tobi_status tobi_script_deform(tobi_script *s, double t, int64_t n, const double
     walk(s, t, n, rest, position, &i, &why);
     if (!why) return TOBI_OK;
     return tobi_fail(err, TOBI_SCRIPT, "%s: %s (t = %.9g s, rest point %.6g %.6g %.6g)", s->label,
-                     *why ? why : "deform returned a number that is not finite", t, rest[i][0], rest[i][1],
+                     *why ? why : tr("deform returned a number that is not finite"), t, rest[i][0],
+                     rest[i][1],
                      rest[i][2]);
 }
 
@@ -311,7 +312,8 @@ tobi_status tobi_script_flow(void *user, int64_t n, const double (*place)[3], do
     walk(s, 0, n, place, velocity, &i, &why);
     if (!why) return TOBI_OK;
     return tobi_fail(err, TOBI_SCRIPT, "%s: %s (at %.6g %.6g %.6g m)", s->label,
-                     *why ? why : "velocity returned a number that is not finite", place[i][0], place[i][1],
+                     *why ? why : tr("velocity returned a number that is not finite"), place[i][0],
+                     place[i][1],
                      place[i][2]);
 }
 

@@ -300,7 +300,7 @@ static void start_timer(process *s)
 static void push_json(lua_State *lua, const json_t *value, int depth)
 {
     luaL_checkstack(lua, 4, "params");
-    if (depth > DEPTH_LIMIT) luaL_error(lua, "params are nested too deeply");
+    if (depth > DEPTH_LIMIT) luaL_error(lua, "%s", tr("params are nested too deeply"));
     if (json_is_number(value)) lua_pushnumber(lua, json_number_value(value));
     else if (json_is_boolean(value)) lua_pushboolean(lua, json_is_true(value));
     else if (json_is_string(value))
@@ -328,12 +328,12 @@ static void read_pivot(lua_State *lua, int user, double pivot[3])
 {
     lua_getfield(lua, user, "pivot");
     if (!lua_isnil(lua, -1)) {
-        if (!lua_istable(lua, -1)) luaL_error(lua, "pivot must be {x, y, z}");
+        if (!lua_istable(lua, -1)) luaL_error(lua, "%s", tr("pivot must be {x, y, z}"));
         for (int a = 0; a < 3; a++) {
             lua_rawgeti(lua, -1, a + 1);
             pivot[a] = lua_tonumber(lua, -1);
             if (lua_type(lua, -1) != LUA_TNUMBER || !isfinite(pivot[a]))
-                luaL_error(lua, "pivot must be {x, y, z}, three finite numbers");
+                luaL_error(lua, "%s", tr("pivot must be {x, y, z}, three finite numbers"));
             lua_pop(lua, 1);
         }
     }
@@ -365,12 +365,12 @@ static int bind_functions(lua_State *lua, process *s, int user, int bind)
     lua_getfield(lua, user, "control");
     bool walks = lua_isfunction(lua, -2);
     if (s->job->role == TOBI_CONTROL_SCRIPT) {
-        if (!lua_isfunction(lua, -1)) return luaL_error(lua, "define function control(t, body)");
+        if (!lua_isfunction(lua, -1)) return luaL_error(lua, "%s", tr("define function control(t, body)"));
     } else if (s->job->role == TOBI_FLOW_SCRIPT) {
-        if (!walks) return luaL_error(lua, "define function velocity(x, y, z)");
+        if (!walks) return luaL_error(lua, "%s", tr("define function velocity(x, y, z)"));
     } else if (walks == places) {
-        return luaL_error(lua, "define either function deform(x, y, z, t) or function place(t)%s",
-                          walks ? ", not both" : "");
+        return luaL_error(lua, tr("define either function deform(x, y, z, t) or function place(t)%s"),
+                          walks ? tr(", not both") : "");
     }
     s->channel->rigid = places;
     lua_call(lua, 3, 0);
@@ -476,7 +476,8 @@ static void serve(process *s)
     if (code != 0 && code != LUA_ERRMEM)
         /* Numbers are left out: converting one allocates, unprotected here. */
         snprintf(c->text, sizeof c->text, "%s",
-                 lua_type(s->lua, -1) == LUA_TSTRING ? lua_tostring(s->lua, -1) : "an error without a text");
+                 lua_type(s->lua, -1) == LUA_TSTRING ? lua_tostring(s->lua, -1)
+                 : tr("an error without a text"));
     c->reply = code == 0 ? TOBI_REPLY_DONE : code == LUA_ERRMEM ? TOBI_REPLY_FULL : TOBI_REPLY_FAILED;
 }
 

@@ -41,18 +41,22 @@ void tobi_texts_free(tobi_texts *texts)
 const char *tobi_json_kind(const json_t *value)
 {
     switch (json_typeof(value)) {
-    case JSON_OBJECT: return "an object";
-    case JSON_ARRAY: return "a list";
-    case JSON_STRING: return "a text";
+    case JSON_OBJECT: return tr("an object");
+    case JSON_ARRAY: return tr("a list");
+    case JSON_STRING: return tr("a text");
     case JSON_INTEGER:
-    case JSON_REAL: return "a number";
+    case JSON_REAL: return tr("a number");
     case JSON_NULL: return "null";
-    default: return "true or false";
+    default: return tr("true or false");
     }
 }
 
+/* Of the words of limits: pages of keys are English, mistakes in that of the user. */
+typedef const char *(*translation)(const char *english);
+static const char *keep_english(const char *english) { return english; }
+
 /* "a, b or c" from "a|b|c". */
-static void list_choices(const char *choices, char *text, size_t size)
+static void list_choices(const char *choices, translation say, char *text, size_t size)
 {
     int count = tobi_choice_count(choices), length;
     size_t used = 0;
@@ -60,7 +64,7 @@ static void list_choices(const char *choices, char *text, size_t size)
     for (int i = 0; i < count && used < size; i++) {
         const char *word = tobi_choice_word(choices, i, &length);
         used += (size_t)snprintf(text + used, size - used, "%s%.*s",
-                                 i == 0 ? "" : i == count - 1 ? " or " : ", ", length, word);
+                                 i == 0 ? "" : i == count - 1 ? say(TR(" or ")) : ", ", length, word);
     }
 }
 
@@ -72,32 +76,41 @@ static void write_limit(double v, char text[32])
     else snprintf(text, 32, "%.10g", v);
 }
 
-void tobi_bind_limits(const tobi_param *row, char *text, size_t size)
+static void say_limits(const tobi_param *row, translation say, char *text, size_t size)
 {
     const char *unit = row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
     const char *gap = unit[0] ? " " : "";
-    char numbers[128];
+    char numbers[TOBI_NOTE];
     if (row->type == TOBI_PARAM_CHOICE) {
-        list_choices(row->choices, text, size);
+        list_choices(row->choices, say, text, size);
         return;
     }
     if (row->type == TOBI_PARAM_BOOL || row->type == TOBI_PARAM_TEXT) {
-        snprintf(text, size, "%s", row->type == TOBI_PARAM_BOOL ? "true or false" : "any");
+        snprintf(text, size, "%s", row->type == TOBI_PARAM_BOOL ? say(TR("true or false")) : say(TR("any")));
         return;
     }
-    if (row->positive && isnan(row->max)) snprintf(numbers, sizeof numbers, "greater than 0");
+    if (row->positive && isnan(row->max))
+        snprintf(numbers, sizeof numbers, say(TR("greater than 0%s%s")), gap, unit);
     else if (isnan(row->min) && isnan(row->max))
-        snprintf(numbers, sizeof numbers, gap[0] ? "any number in" : "any number");
-    else if (isnan(row->max)) snprintf(numbers, sizeof numbers, "at least %.10g", row->min);
-    else if (isnan(row->min)) snprintf(numbers, sizeof numbers, "at most %.10g", row->max);
+        snprintf(numbers, sizeof numbers, say(gap[0] ? TR("any number in%s%s") : TR("any number%s%s")), gap,
+                 unit);
+    else if (isnan(row->max))
+        snprintf(numbers, sizeof numbers, say(TR("at least %.10g%s%s")), row->min, gap, unit);
+    else if (isnan(row->min))
+        snprintf(numbers, sizeof numbers, say(TR("at most %.10g%s%s")), row->max, gap, unit);
     else {
         char low[32], high[32];
         write_limit(row->min, low);
         write_limit(row->max, high);
-        snprintf(numbers, sizeof numbers, "%s to %s", low, high);
+        snprintf(numbers, sizeof numbers, say(TR("%s to %s%s%s")), low, high, gap, unit);
     }
-    if (row->text) snprintf(text, size, "%s%s%s, or \"%s\"", numbers, gap, unit, row->text);
-    else snprintf(text, size, "%s%s%s", numbers, gap, unit);
+    if (row->text) snprintf(text, size, say(TR("%s, or \"%s\"")), numbers, row->text);
+    else snprintf(text, size, "%s", numbers);
+}
+
+void tobi_bind_limits(const tobi_param *row, char *text, size_t size)
+{
+    say_limits(row, keep_english, text, size);
 }
 
 void tobi_bind_default(const tobi_param *row, char *text, size_t size)
@@ -135,8 +148,8 @@ typedef struct slot {
 
 static void report_kind(const slot *s, const char *must)
 {
-    char limits[200];
-    tobi_bind_limits(s->row, limits, sizeof limits);
+    char limits[TOBI_NOTE];
+    say_limits(s->row, tobi_text, limits, sizeof limits);
     const char *shown = json_string_value(s->value);
     if (s->row->type == TOBI_PARAM_BOOL)
         tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s",
@@ -152,8 +165,8 @@ static void report_kind(const slot *s, const char *must)
 static int check_range(const slot *s, const tobi_place *place, double v)
 {
     if (is_allowed(s->row, v)) return 1;
-    char limits[200];
-    tobi_bind_limits(s->row, limits, sizeof limits);
+    char limits[TOBI_NOTE];
+    say_limits(s->row, tobi_text, limits, sizeof limits);
     tobi_source_mistake(s->binder->source, place, "is %.10g, allowed is %s", v, limits);
     return 0;
 }
@@ -169,7 +182,7 @@ static int read_number(const slot *s, double *v)
 static void bind_real(const slot *s)
 {
     double v;
-    if (!read_number(s, &v)) report_kind(s, "a number");
+    if (!read_number(s, &v)) report_kind(s, tr("a number"));
     else if (json_is_string(s->value) || check_range(s, s->place, v)) memcpy(s->member, &v, sizeof v);
 }
 
@@ -177,7 +190,7 @@ static void bind_int(const slot *s)
 {
     double v;
     if (!read_number(s, &v) || v != floor(v)) {
-        report_kind(s, "a whole number");
+        report_kind(s, tr("a whole number"));
     } else if (json_is_string(s->value) || check_range(s, s->place, v)) {
         int whole = (int)v;
         memcpy(s->member, &whole, sizeof whole);
@@ -187,7 +200,7 @@ static void bind_int(const slot *s)
 static void bind_bool(const slot *s)
 {
     int on = json_is_true(s->value);
-    if (!json_is_boolean(s->value)) report_kind(s, "true or false");
+    if (!json_is_boolean(s->value)) report_kind(s, tr("true or false"));
     else memcpy(s->member, &on, sizeof on);
 }
 
@@ -207,9 +220,9 @@ static void bind_vector(const slot *s)
         if (check_range(s, s->place, v[0])) memcpy(s->member, v, sizeof v);
         return;
     }
-    const char *must = two ? "a list of 2 numbers (x, y), or 3"
-                       : scale ? "a number or a list of 3 numbers"
-                       : s->row->text ? "a list of 3 numbers" : "a list of 3 numbers (x, y, z)";
+    const char *must = two ? tr("a list of 2 numbers (x, y), or 3")
+                       : scale ? tr("a number or a list of 3 numbers")
+                       : s->row->text ? tr("a list of 3 numbers") : tr("a list of 3 numbers (x, y, z)");
     size_t n = json_array_size(s->value);
     if (!json_is_array(s->value)) {
         report_kind(s, must);
@@ -226,7 +239,7 @@ static void bind_vector(const slot *s)
         slot one = { s->binder, s->row, &entry, json_array_get(s->value, i), NULL };
         v[i] = json_number_value(one.value);
         if (!json_is_number(one.value)) {
-            report_kind(&one, "a number");
+            report_kind(&one, tr("a number"));
             good = 0;
         } else if (!check_range(s, &entry, v[i])) {
             good = 0;
@@ -257,8 +270,8 @@ static void bind_choice(const slot *s)
         snprintf(words[i], sizeof words[i], "%.*s", length, choice);
         list[i] = words[i];
     }
-    char limits[200];
-    tobi_bind_limits(s->row, limits, sizeof limits);
+    char limits[TOBI_NOTE];
+    say_limits(s->row, tobi_text, limits, sizeof limits);
     const char *near =
         word ? tobi_suggest(word, list, (size_t)(count < MOST ? count : MOST)) : NULL;
     if (near)
@@ -310,7 +323,7 @@ static char *join_names(const slot *s)
         const char *name = json_string_value(entry);
         if (!name || !name[0] || strchr(name, ','))
             tobi_source_mistake(s->binder->source, &place, "is %s, must be a name",
-                                name ? "not one name" : tobi_json_kind(entry));
+                                name ? tr("not one name") : tobi_json_kind(entry));
         else fprintf(out, "%s%s", ftell(out) > 0 ? "," : "", name);
     }
     fclose(out);
@@ -332,11 +345,11 @@ static void bind_text(const slot *s)
     if (!given && !((is_list || is_either) && json_is_array(s->value))) {
         tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s",
                             tobi_json_kind(s->value),
-                            is_path   ? "the path of a file"
-                            : is_list ? "a list of names"
-                            : is_free ? "a text"
-                            : is_either ? "a name or a list of names"
-                                        : "a name");
+                            is_path   ? tr("the path of a file")
+                            : is_list ? tr("a list of names")
+                            : is_free ? tr("a text")
+                            : is_either ? tr("a name or a list of names")
+                                        : tr("a name"));
         return;
     }
     if (is_path) {
@@ -431,7 +444,8 @@ static void report_unknown(const pass *p, const char *prefix, const tobi_place *
         used += (size_t)snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "", keys[i]);
     const int owned = tobi_describe_owners(p->table, place->key, owners, sizeof owners) > 0;
     tobi_source_mistake_at_key(p->binder->source, place, "unknown key; %s%s%sallowed here: %s",
-                               owned ? "it belongs to " : "", owned ? owners : "", owned ? "; " : "", all);
+                               owned ? tr("it belongs to ") : "", owned ? owners : "", owned ? "; " : "",
+                               all);
 }
 
 static void bind_row(pass *p, const tobi_param *row, json_t *value, const tobi_place *place)
@@ -545,16 +559,16 @@ static void bind_members(pass *p, const char *prefix, json_t *object, const tobi
 static void report_missing(const tobi_binder *binder, const tobi_param *row,
                            const tobi_place *place)
 {
-    char first[48] = "", limits[200];
+    char first[48] = "", limits[TOBI_NOTE];
     const char *dot = strchr(row->key, '.');
     snprintf(first, sizeof first, "%.*s", (int)(dot ? dot - row->key : 0), row->key);
     tobi_place outer = { place, first, 0 };
     tobi_place inner = { dot ? &outer : place, dot ? dot + 1 : row->key, 0 };
-    tobi_bind_limits(row, limits, sizeof limits);
+    say_limits(row, tobi_text, limits, sizeof limits);
     if (row->type == TOBI_PARAM_TEXT)
-        tobi_source_mistake(binder->source, &inner, "is missing: %s", row->doc);
+        tobi_source_mistake(binder->source, &inner, "is missing: %s", tr(row->doc));
     else
-        tobi_source_mistake(binder->source, &inner, "is missing (%s): %s", limits, row->doc);
+        tobi_source_mistake(binder->source, &inner, "is missing (%s): %s", limits, tr(row->doc));
 }
 
 tobi_bound tobi_bind(const tobi_binder *binder, const tobi_param_table *table, json_t *object,

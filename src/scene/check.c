@@ -61,7 +61,7 @@ void tobi_check_file(tobi_source *source, const tobi_place *place, const char *p
     struct stat info;
     if (!path) return;
     if (stat(path, &info) != 0)
-        tobi_source_mistake(source, place, "cannot find %s: %s", path, strerror(errno));
+        tobi_source_mistake(source, place, "cannot find %s: %s", path, tobi_reason(errno));
     else if (!S_ISREG(info.st_mode))
         tobi_source_mistake(source, place, "%s is not a file", path);
 }
@@ -263,7 +263,7 @@ static void check_shape(const tobi_scene *scene, tobi_source *source, int body, 
     if (!json_is_object(value)) return;
     if (count != 1) {
         tobi_source_mistake(source, entry, "must have one of mesh, box, sphere, cylinder, capsule, plate, "
-                            "knife, outline and terrain; it has %s", count ? "several" : "none");
+                            "knife, outline and terrain; it has %s", count ? tr("several") : tr("none"));
         return;
     }
     tobi_check_file(source, &(tobi_place){ &(tobi_place){ entry, "terrain", 0 }, "file", 0 },
@@ -354,7 +354,7 @@ static void check_porous(const tobi_scene *scene, tobi_source *source)
         if (!json_is_object(zone)) continue;
         if (shapes != 1)
             tobi_source_mistake(source, &entry, "must have one of box, outline and cylinder, it has %s",
-                                shapes ? "several" : "none");
+                                shapes ? tr("several") : tr("none"));
         else if (box && !(json_object_get(box, "min") && json_object_get(box, "max")))
             tobi_source_mistake(source, &at_box, "must have two corners, min and max");
         else if (outline && !json_object_get(outline, "points") && !json_object_get(outline, "file"))

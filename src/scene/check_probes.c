@@ -32,14 +32,14 @@ static void check_inside(const one *o, const char *key, const double x[3])
 #define OF(kind) (1 << TOBI_PROBE_##kind)
 #define BOXES (OF(PATCH) | OF(FLOW) | OF(VOLUME))
 static const struct { const char *key; int kinds; const char *why; } read_by[] = {
-    { "end", OF(RUN_UP), "is for a run-up, and this is none" },
-    { "normal", BOXES, "is for a patch, a flow or a volume" },
-    { "along", BOXES, "is for a patch, a flow or a volume" },
-    { "length", BOXES, "is for a patch, a flow or a volume" },
-    { "width", BOXES, "is for a patch, a flow or a volume" },
-    { "height", OF(VOLUME), "is for a volume" },
-    { "fluid", ~(OF(POINT) | OF(PATCH)), "is for a level, a run-up, a flow or a volume" },
-    { "body", ~OF(LEVEL), "is not for a level, which stands still; a run-up can sit on a body" },
+    { "end", OF(RUN_UP), TR("is for a run-up, and this is none") },
+    { "normal", BOXES, TR("is for a patch, a flow or a volume") },
+    { "along", BOXES, TR("is for a patch, a flow or a volume") },
+    { "length", BOXES, TR("is for a patch, a flow or a volume") },
+    { "width", BOXES, TR("is for a patch, a flow or a volume") },
+    { "height", OF(VOLUME), TR("is for a volume") },
+    { "fluid", ~(OF(POINT) | OF(PATCH)), TR("is for a level, a run-up, a flow or a volume") },
+    { "body", ~OF(LEVEL), TR("is not for a level, which stands still; a run-up can sit on a body") },
 };
 enum { READ_BY = sizeof read_by/sizeof *read_by };
 
@@ -57,7 +57,7 @@ static void check_keys(const one *o, tobi_bound bound)
     for (int k = 0; bound.given == bound.good && k < READ_BY; k++) {
         const tobi_place at = { &o->entry, read_by[k].key, 0 };
         if (tobi_bind_has(&tobi_probe_table, bound.given, read_by[k].key) && !is_read(o->def, k))
-            tobi_source_mistake_at_key(o->source, &at, "%s", read_by[k].why);
+            tobi_source_mistake_at_key(o->source, &at, "%s", tr(read_by[k].why));
     }
 }
 
@@ -66,17 +66,18 @@ static void check_sizes(const one *o, tobi_rows given)
     const tobi_probe_def *d = o->def;
     const int flat = o->scene->world.dimension == 2;
     if (d->kind == TOBI_PROBE_RUN_UP && !tobi_bind_has(&tobi_probe_table, given, "end"))
-        tell(o, "end", "is missing: a run-up is a line");
+        tell(o, "end", tr("is missing: a run-up is a line"));
     else if (d->kind == TOBI_PROBE_RUN_UP) {
         check_inside(o, "end", d->end);
-        if (memcmp(d->end, d->position, sizeof d->end) == 0) tell(o, "end", "is where the run-up begins");
+        if (memcmp(d->end, d->position, sizeof d->end) == 0) tell(o, "end", tr("is where the run-up begins"));
     }
     if (d->kind != TOBI_PROBE_PATCH && d->kind != TOBI_PROBE_FLOW && d->kind != TOBI_PROBE_VOLUME) return;
-    if (!(d->length > 0)) tell(o, "length", "is missing (greater than 0 m)");
-    if (!flat && !(d->width > 0)) tell(o, "width", "is missing (greater than 0 m)");
-    if (d->kind == TOBI_PROBE_VOLUME && !(d->height > 0)) tell(o, "height", "is missing (greater than 0 m)");
-    if (flat && d->normal[2] != 0) tell(o, "normal", "has a z, and the scene is 2-D");
-    if (flat && d->along[2] != 0) tell(o, "along", "has a z, and the scene is 2-D");
+    if (!(d->length > 0)) tell(o, "length", tr("is missing (greater than 0 m)"));
+    if (!flat && !(d->width > 0)) tell(o, "width", tr("is missing (greater than 0 m)"));
+    if (d->kind == TOBI_PROBE_VOLUME && !(d->height > 0)) tell(o, "height",
+                                                               tr("is missing (greater than 0 m)"));
+    if (flat && d->normal[2] != 0) tell(o, "normal", tr("has a z, and the scene is 2-D"));
+    if (flat && d->along[2] != 0) tell(o, "along", tr("has a z, and the scene is 2-D"));
 }
 
 enum { NAMES = 64 };

@@ -125,7 +125,7 @@ static void check_fill(const tobi_scene *scene, tobi_source *source, const tobi_
     int shapes = has_box + has_sphere + has_mesh + has_outline + has_vessel;
     if (shapes != 1)
         tobi_source_mistake(source, place, "must have one of box, sphere, mesh, outline and vessel, it "
-                            "has %s", shapes ? "several" : "none");
+                            "has %s", shapes ? tr("several") : tr("none"));
     else if (has_outline) tobi_check_outline(source, &(tobi_place){ place, "outline", 0 }, &fill->def.outline,
                                              scene->world.dimension);
     else if (has_vessel) check_vessel(scene, source, fill, place);

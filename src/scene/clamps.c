@@ -7,8 +7,8 @@
 /* Why a body of the scene cannot hold a solid, NULL if it can. */
 static const char *find_reason(const tobi_scene_body *b)
 {
-    if (b->def.blade) return "is a blade, which cuts solids";
-    if (b->def.absent_from > 0) return "is absent for a time";
+    if (b->def.blade) return tr("is a blade, which cuts solids");
+    if (b->def.absent_from > 0) return tr("is absent for a time");
     return NULL;
 }
 
@@ -22,7 +22,7 @@ static void suggest_body(const tobi_scene *scene, const char *name, tobi_source 
         if (scene->bodies[k].def.name) names[count++] = scene->bodies[k].def.name;
     const char *near = tobi_suggest(name, names, count);
     tobi_source_mistake(source, key, "\"%s\" is no body of the scene%s%s%s", name,
-                        near ? "; did you mean \"" : "", near ? near : "", near ? "\"?" : "");
+                        near ? tr("; did you mean \"") : "", near ? near : "", near ? "\"?" : "");
 }
 
 static void check_name(const tobi_scene *scene, const char *name, tobi_source *source, const tobi_place *key)

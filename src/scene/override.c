@@ -63,7 +63,7 @@ static int find_named(const json_t *list, const char *name)
 static void list_names(const json_t *list, char *text, size_t size)
 {
     const size_t count = json_array_size(list);
-    size_t i, named = 0, used = (size_t)snprintf(text, size, "there are");
+    size_t i, named = 0, used = (size_t)snprintf(text, size, tr("there are"));
     json_t *entry;
     json_array_foreach(list, i, entry) {
         const char *its = json_string_value(json_object_get(entry, "name"));
@@ -71,9 +71,9 @@ static void list_names(const json_t *list, char *text, size_t size)
             used += (size_t)snprintf(text + used, size - used, "%s%s", named++ ? ", " : " ", its);
     }
     if (named) return;
-    if (count == 0) snprintf(text, size, "the list is empty");
-    else if (count == 1) snprintf(text, size, "the only entry has no name, write [0]");
-    else snprintf(text, size, "the entries have no names, write [0] to [%zu]", count - 1);
+    if (count == 0) snprintf(text, size, tr("the list is empty"));
+    else if (count == 1) snprintf(text, size, tr("the only entry has no name, write [0]"));
+    else snprintf(text, size, tr("the entries have no names, write [0] to [%zu]"), count - 1);
 }
 
 /* The entry meant by "2", where none has that name; -1 if it is no number. */
@@ -155,7 +155,7 @@ static void refuse_list(tobi_source *source, const char *text, json_t *object, c
         if (json_is_array(value) && count < KEYS) keys[count++] = key;
     const char *near = tobi_suggest(name, keys, count);
     tobi_report_add(source->report, 0, "--set %s: there is no list \"%s\"%s%s%s", text, name,
-                    near ? "; did you mean \"" : "", near ? near : "", near ? "\"?" : "");
+                    near ? tr("; did you mean \"") : "", near ? near : "", near ? "\"?" : "");
 }
 
 static json_t *get_child(json_t *node, const json_t *step)

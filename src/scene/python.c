@@ -156,15 +156,15 @@ static char *read_text(reader *r)
     }
     for (; r->text[r->at] && r->text[r->at] != '\n' && r->text[r->at] != quote; r->at++) {
         if (r->text[r->at] == '\\' && (!r->text[++r->at] || !strchr("\\'\"", r->text[r->at])))
-            refuse(r, r->at - 1, "a \\ in a text is not read, but for \\\\, \\' and \\\"");
+            refuse(r, r->at - 1, tr("a \\ in a text is not read, but for \\\\, \\' and \\\""));
         if (r->failed) break;
         out[n++] = r->text[r->at];
     }
     out[n] = '\0';
-    if (!r->failed && r->text[r->at] != quote) refuse(r, begin, "a text does not end in its line");
+    if (!r->failed && r->text[r->at] != quote) refuse(r, begin, tr("a text does not end in its line"));
     r->at += !r->failed;
     json_t *test = json_string(out);
-    if (!test) refuse(r, begin, "a text is not UTF-8");
+    if (!test) refuse(r, begin, tr("a text is not UTF-8"));
     json_decref(test);
     return out;
 }
@@ -180,11 +180,11 @@ static node *read_number(reader *r)
     n->whole = !memchr(r->text + r->at, '.', length) && !memchr(r->text + r->at, 'e', length) &&
                !memchr(r->text + r->at, 'E', length);
     if (memchr(r->text + r->at, 'x', length) || memchr(r->text + r->at, 'X', length))
-        refuse(r, r->at, "numbers are decimal here");
+        refuse(r, r->at, tr("numbers are decimal here"));
     r->at += length;
     if (isalnum((unsigned char)*end) || *end == '_' || *end == '.')
-        refuse(r, n->at, "\"%.20s\" is no number", r->text + n->at);
-    if (!isfinite(value)) refuse(r, n->at, "the number is too large");
+        refuse(r, n->at, tr("\"%.20s\" is no number"), r->text + n->at);
+    if (!isfinite(value)) refuse(r, n->at, tr("the number is too large"));
     return n;
 }
 
@@ -220,11 +220,11 @@ static node *read_name(reader *r)
     node *known = find_name(r, name);
     skip_blanks(r);
     if (r->text[r->at] == '(' || r->text[r->at] == '.' || r->text[r->at] == '[')
-        refuse(r, at, "%s%c..: calls, members and entries are not read; write the number", name,
+        refuse(r, at, tr("%s%c..: calls, members and entries are not read; write the number"), name,
                r->text[r->at]);
-    if (!known) refuse(r, at, "the name \"%s\" is given nowhere above", name);
+    if (!known) refuse(r, at, tr("the name \"%s\" is given nowhere above"), name);
     else if (known->kind == LIST || known->kind == DICT)
-        refuse(r, at, "%s is a list or dict; values refer to numbers and texts only", name);
+        refuse(r, at, tr("%s is a list or dict; values refer to numbers and texts only"), name);
     return known;
 }
 
@@ -240,7 +240,7 @@ static node *read_list(reader *r, char open)
         if (r->failed) break;
         append(r, list, NULL, value->at, value);
         if (take(r, ',')) commas++;
-        else if (skip_blanks(r), r->text[r->at] != close) refuse(r, r->at, "expected , or %c", close);
+        else if (skip_blanks(r), r->text[r->at] != close) refuse(r, r->at, tr("expected , or %c"), close);
     }
     r->depth--;
     return !r->failed && open == '(' && !commas && list->first ? list->first->value : list;
@@ -254,16 +254,16 @@ static node *read_dict(reader *r)
         skip_blanks(r);
         size_t at = r->at;
         if (r->text[at] != '"' && r->text[at] != '\'') {
-            refuse(r, at, "expected a key, a text in quotes, or }");
+            refuse(r, at, tr("expected a key, a text in quotes, or }"));
             break;
         }
         char *key = read_text(r);
-        if (!r->failed && !take(r, ':')) refuse(r, r->at, "expected : behind the key \"%s\"", key);
+        if (!r->failed && !take(r, ':')) refuse(r, r->at, tr("expected : behind the key \"%s\""), key);
         node *value = r->failed ? NULL : read_sum(r);
         if (r->failed) free(key);
         else append(r, dict, key, at, value);
         if (!take(r, ',') && (skip_blanks(r), r->text[r->at] != '}'))
-            refuse(r, r->at, "expected , or } in the dict");
+            refuse(r, r->at, tr("expected , or } in the dict"));
     }
     r->depth--;
     return dict;
@@ -285,27 +285,27 @@ static node *read_value(reader *r)
         else free(text);
         return n;
     }
-    refuse(r, r->at, "expected a value: a number, a text, ( ), [ ], { } or a name given above");
+    refuse(r, r->at, tr("expected a value: a number, a text, ( ), [ ], { } or a name given above"));
     return NULL;
 }
 
 static node *operate(reader *r, size_t at, char op, const node *a, const node *b)
 {
     if (r->failed) return NULL;
-    if (a->kind != NUMBER || b->kind != NUMBER) refuse(r, at, "%c is read between numbers only", op);
+    if (a->kind != NUMBER || b->kind != NUMBER) refuse(r, at, tr("%c is read between numbers only"), op);
     node *n = make(r, NUMBER, a->at);
     if (!n) return NULL;
     double x = a->number, y = b->number;
     n->number = op == '+' ? x + y : op == '-' ? x - y : op == '*' ? x*y : op == '/' ? x/y : pow(x, y);
     n->whole = a->whole && b->whole && op != '/' && n->number == floor(n->number);
-    if (!r->failed && !isfinite(n->number)) refuse(r, at, "the result is no finite number");
+    if (!r->failed && !isfinite(n->number)) refuse(r, at, tr("the result is no finite number"));
     return n;
 }
 
 /* - and + in front bind weaker than **, as in Python. */
 static node *read_factor(reader *r)
 {
-    if (++r->nested > DEPTH_LIMIT) refuse(r, r->at, "more than %d values within each other", DEPTH_LIMIT);
+    if (++r->nested > DEPTH_LIMIT) refuse(r, r->at, tr("more than %d values within each other"), DEPTH_LIMIT);
     skip_blanks(r);
     const size_t at = r->at;
     const node minus = { .kind = NUMBER, .number = -1, .whole = 1, .at = at };
@@ -330,7 +330,7 @@ static node *read_row(reader *r, const char *operators, node *(*read_operand)(re
         const char op = r->text[r->at];
         if (r->failed || !op || !strchr(operators, op)) return left;
         const size_t at = r->at++;
-        if (strchr("*/", op) && r->text[r->at] == op) refuse(r, r->at, "the operators are + - * / **");
+        if (strchr("*/", op) && r->text[r->at] == op) refuse(r, r->at, tr("the operators are + - * / **"));
         node *right = read_operand(r);
         left = operate(r, at, op, left, right);
     }
@@ -367,8 +367,8 @@ static void read_statement(reader *r)
     else {
         r->at = at + length;
         if (!length || isdigit((unsigned char)name[0]) || !take(r, '=') || r->text[r->at] == '=')
-            refuse(r, at, "is not read; a parameter file has lines NAME = VALUE, and import lines");
-        if (r->names++ >= NAME_LIMIT) refuse(r, at, "is one name too many; allowed are %d", NAME_LIMIT);
+            refuse(r, at, tr("is not read; a parameter file has lines NAME = VALUE, and import lines"));
+        if (r->names++ >= NAME_LIMIT) refuse(r, at, tr("is one name too many; allowed are %d"), NAME_LIMIT);
         node *value = r->failed ? NULL : read_right_side(r);
         if (!r->failed) {
             append(r, r->file, name, at, value);
@@ -376,7 +376,7 @@ static void read_statement(reader *r)
         }
         skip_blanks(r);
         if (!r->failed && r->text[r->at] && r->text[r->at] != '\n' && r->text[r->at] != ';')
-            refuse(r, r->at, "expected the end of the line");
+            refuse(r, r->at, tr("expected the end of the line"));
     }
     free(name);
 }
@@ -402,7 +402,7 @@ static int read_file(reader *r)
             r->at++;
             continue;
         }
-        if (new_line && indent) refuse(r, r->at, "is indented; a parameter file has no blocks");
+        if (new_line && indent) refuse(r, r->at, tr("is indented; a parameter file has no blocks"));
         else read_statement(r);
         if (!r->failed) continue;
         mistakes++;

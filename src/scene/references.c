@@ -8,32 +8,32 @@
 #include <string.h>
 
 /* "; did you mean "a"?", or nothing. */
-static void suggest(const char *word, const char *const *names, int count, char text[200])
+static void suggest(const char *word, const char *const *names, int count, char text[TOBI_NOTE])
 {
     const char *near = tobi_suggest(word, names, (size_t)count);
     text[0] = '\0';
-    if (near) snprintf(text, 200, "; did you mean \"%s\"?", near);
+    if (near) snprintf(text, TOBI_NOTE, tr("; did you mean \"%s\"?"), near);
 }
 
 static void check_column(tobi_source *source, const tobi_place *entry, tobi_table table,
                          const char *column)
 {
     static const char *const where[] = {
-        [TOBI_TABLE_HISTORY] = "history.csv (one of bodies.csv or probes.csv needs body or probe)",
-        [TOBI_TABLE_BODIES] = "bodies.csv", [TOBI_TABLE_POINT] = "a point of probes.csv",
-        [TOBI_TABLE_LEVEL] = "a level of probes.csv", [TOBI_TABLE_PATCH] = "a patch of probes.csv",
-        [TOBI_TABLE_RUN_UP] = "a run-up of probes.csv", [TOBI_TABLE_FLOW] = "a flow of probes.csv",
-        [TOBI_TABLE_VOLUME] = "a volume of probes.csv", [TOBI_TABLE_SOLIDS] = "solids.csv" };
+        [TOBI_TABLE_HISTORY] = TR("history.csv (one of bodies.csv or probes.csv needs body or probe)"),
+        [TOBI_TABLE_BODIES] = "bodies.csv", [TOBI_TABLE_POINT] = TR("a point of probes.csv"),
+        [TOBI_TABLE_LEVEL] = TR("a level of probes.csv"), [TOBI_TABLE_PATCH] = TR("a patch of probes.csv"),
+        [TOBI_TABLE_RUN_UP] = TR("a run-up of probes.csv"), [TOBI_TABLE_FLOW] = TR("a flow of probes.csv"),
+        [TOBI_TABLE_VOLUME] = TR("a volume of probes.csv"), [TOBI_TABLE_SOLIDS] = "solids.csv" };
     enum { COLUMNS = 128 };
     const char *names[COLUMNS];
-    char near[200];
+    char near[TOBI_NOTE];
     int count = 0;
     const tobi_column *c;
     tobi_place place = { entry, "column", 0 };
     for (; count < COLUMNS && (c = tobi_run_column(table, count)); count++)
         if (strcmp(names[count] = c->name, column) == 0) return;
     suggest(column, names, count, near);
-    tobi_source_mistake(source, &place, "there is no column \"%s\" in %s%s", column, where[table],
+    tobi_source_mistake(source, &place, "there is no column \"%s\" in %s%s", column, tr(where[table]),
                         near);
 }
 
@@ -43,7 +43,7 @@ static int find_owner(const tobi_scene *scene, tobi_source *source, const tobi_p
 {
     enum { NAMES = 64 };
     const char *names[NAMES], *own;
-    char near[200];
+    char near[TOBI_NOTE];
     tobi_place place = { entry, key, 0 };
     int bodies = strcmp(key, "body") == 0, count = bodies ? scene->body_count : scene->probe_count;
     for (int i = 0; i < count; i++) {

@@ -61,7 +61,7 @@ static void store_line(tobi_report *report, size_t rank, const char *format, va_
         report->capacity = capacity;
     }
     char *line = NULL;
-    if (vasprintf(&line, format, args) < 0) {
+    if (vasprintf(&line, tobi_text(format), args) < 0) {
         report->no_memory = 1;
         return;
     }
@@ -103,7 +103,7 @@ void tobi_report_close(tobi_report *report)
     if (report->count)
         qsort(report->lines, (size_t)report->count, sizeof *report->lines, order_lines);
     if (report->left_out)
-        store_last(report, "... and %lld more mistakes", (long long)report->left_out);
+        store_last(report, TR("... and %lld more mistakes"), (long long)report->left_out);
     report->left_out = 0;
 }
 
@@ -124,7 +124,7 @@ tobi_status tobi_report_fail(const tobi_report *report, tobi_error *err)
     }
     err->text[used] = '\0';
     if (i < report->count)
-        snprintf(err->text + used, sizeof err->text - used, "%s... and %d more lines",
+        snprintf(err->text + used, sizeof err->text - used, tr("%s... and %d more lines"),
                  i ? "\n" : "", report->count - i);
     return TOBI_INVALID;
 }

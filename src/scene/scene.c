@@ -386,7 +386,7 @@ static tobi_status load(const char *path, const char *const *overrides, int fore
     size_t size;
     *scene = NULL;
     if (report) *report = NULL;
-    TOBI_TRY(tobi_plain_read(path, "scene", TOBI_SOURCE_LIMIT, &text, &size, err));
+    TOBI_TRY(tobi_plain_read(path, tr("scene"), TOBI_SOURCE_LIMIT, &text, &size, err));
     tobi_status status = parse(path, text, size, overrides, foreign, scene, report, err);
     free(text);
     return status;
@@ -483,9 +483,9 @@ static tobi_status add_body(const tobi_scene *scene, tobi_world *world, const to
     const char *named = json_string_value(json_object_get(scene->stand_ins, def->name));
     TOBI_TRY(tobi_world_add_body(world, def, err));
     if (!named || !def->mesh || !strstr(def->mesh, TOBI_STAND_IN)) return TOBI_OK;
-    char text[560];
-    snprintf(text, sizeof text, "body '%.150s': there is no mesh %.300s, so the fish that comes with "
-             "Tobiuo is taken", def->name, named);
+    char text[TOBI_NOTE];
+    snprintf(text, sizeof text, tr("body '%.150s': there is no mesh %.300s, so the fish that comes with "
+             "Tobiuo is taken"), def->name, named);
     return tobi_world_add_note(world, text, err);
 }
 

@@ -80,7 +80,7 @@ static const char *hint_at_line(const char *text, size_t size, int number)
     size_t at = 0;
     while (--number > 0 && at < size) at = read_line(text, size, at).end + 1;
     return at < size && read_line(text, size, at).is_foreign
-        ? "; if this line belongs to the comment before it, put # in front" : "";
+        ? tr("; if this line belongs to the comment before it, put # in front") : "";
 }
 
 /* Whether the mistake is the bracket that ends at `end`, behind a comma. */
@@ -95,8 +95,8 @@ static int ends_with_comma(const char *text, size_t size, int end)
 /* What to do about what jansson says. */
 static const char *hint_at(const tobi_source *source, size_t size, const json_error_t *mistake)
 {
-    if (strstr(mistake->text, "unable to decode")) return "; a scene must be saved as UTF-8";
-    if (ends_with_comma(source->text, size, mistake->position)) return "; remove the comma before it";
+    if (strstr(mistake->text, "unable to decode")) return tr("; a scene must be saved as UTF-8");
+    if (ends_with_comma(source->text, size, mistake->position)) return tr("; remove the comma before it");
     return hint_at_line(source->text, size, mistake->line);
 }
 
@@ -211,7 +211,7 @@ static void tell_origin(tobi_source *source, const tobi_place *place, const char
     const tobi_origin *o = find_origin(source, path);
     tobi_spots_line(&source->spots, o->offset, &line, &column);
     tobi_report_add(source->report, o->offset, "%s:%d:%d: %s (here %s): %s", source->name, line,
-                    column, o->old ? o->old : "", path[0] ? path : "the scene", what);
+                    column, o->old ? o->old : "", path[0] ? path : tr("the scene"), what);
 }
 
 static void tell(tobi_source *source, const tobi_place *place, int at_key, const char *what)
@@ -237,9 +237,9 @@ static void tell(tobi_source *source, const tobi_place *place, int at_key, const
     va_list args;                                                        \
     if (tobi_report_pass(source->report)) return;                        \
     va_start(args, format);                                              \
-    int length = vasprintf(&what, format, args);                         \
+    int length = vasprintf(&what, tobi_text(format), args);                        \
     va_end(args);                                                        \
-    tell(source, place, at_key, length < 0 ? "out of memory" : what);    \
+    tell(source, place, at_key, length < 0 ? tr("out of memory") : what);    \
     if (length >= 0) free(what)
 
 const tobi_place *tobi_place_read(const char *path, tobi_place chain[TOBI_PATH_STEPS],
@@ -292,7 +292,7 @@ static void report_equal_keys(tobi_source *source, const tobi_place *place, seen
         int line, column;
         char what[64];
         tobi_spots_line(&source->spots, keys[i - 1].at, &line, &column);
-        snprintf(what, sizeof what, "duplicate key, already given in line %d", line);
+        snprintf(what, sizeof what, tr("duplicate key, already given in line %d"), line);
         tobi_place twin = { place, keys[i].key, 0 };
         add_mistake(source, keys[i].at, &twin, what);
     }

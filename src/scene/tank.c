@@ -35,7 +35,7 @@ static int bind_list(const listing *l, void *defs, const tobi_binder *binder, js
     if (!list) return 0;
     if (!json_is_array(list) || json_array_size(list) > (size_t)l->limit) {
         tobi_source_mistake(binder->source, &place, "must be a list [ { ... } ] of %d %s at most", l->limit,
-                            l->noun);
+                            tr(l->noun));
         return 0;
     }
     for (size_t i = 0; i < json_array_size(list); i++) {
@@ -59,10 +59,10 @@ static int write_list(const listing *l, const void *defs, int count, json_t *roo
     return failed;
 }
 
-static const listing damping = { "damping_zones", "zones", &tobi_damping_table, TOBI_ZONES },
-                     porous = { "porous_zones", "zones", &tobi_porous_table, TOBI_POROUS_LIMIT },
-                     scalars = { "scalars", "scalars", &tobi_scalar_table, TOBI_SCALAR_LIMIT },
-                     values = { "scalar_values", "values", &tobi_scalar_value_table,
+static const listing damping = { "damping_zones", TR("zones"), &tobi_damping_table, TOBI_ZONES },
+                     porous = { "porous_zones", TR("zones"), &tobi_porous_table, TOBI_POROUS_LIMIT },
+                     scalars = { "scalars", TR("scalars"), &tobi_scalar_table, TOBI_SCALAR_LIMIT },
+                     values = { "scalar_values", TR("values"), &tobi_scalar_value_table,
                                 TOBI_SCALAR_VALUE_LIMIT };
 
 void tobi_tank_bind(tobi_scene_tank *t, const tobi_binder *binder, json_t *scene, const tobi_place *root)

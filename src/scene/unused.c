@@ -19,58 +19,58 @@ typedef enum reader {
     REGULAR, IRREGULAR, PEAK, RAMP, OWN      /* waves of a maker; OWN: any */
 } reader;
 
-#define NOT_REGULAR "is for regular waves, which have a regular.height"
-#define NOT_IRREGULAR "is for irregular waves, which have an irregular.height"
-#define UNMOVED "is for free and controlled bodies, this one is prescribed"
+#define NOT_REGULAR TR("is for regular waves, which have a regular.height")
+#define NOT_IRREGULAR TR("is for irregular waves, which have an irregular.height")
+#define UNMOVED TR("is for free and controlled bodies, this one is prescribed")
 
 static const struct {
     const char *table, *key;
     reader reader;
     const char *why;
 } keys[] = {
-    { "world", "cfl", SPH, "is for the SPH methods; mlsmpm has its own, mlsmpm.cfl" },
-    { "world", "implicit_viscosity", SPH, "is for liquids of the SPH methods; liquids of mlsmpm have "
-                                                     "their own viscosity" },
-    { "world", "domain.contact_angle", SPH, "is for liquids of the SPH methods; mlsmpm has no "
-                                                      "surface tension" },
-    { "world", "domain.friction", SOLIDS, "is for solids of mlsmpm; what liquids do at a side say "
-                                                    "domain.walls and their viscosity" },
-    { "body", "friction", SPH, "is for liquids of the SPH methods; solids of mlsmpm rub by its "
-                                         "friction_coefficient" },
-    { "body", "contact_angle", SPH, "is for liquids of the SPH methods; mlsmpm has no surface "
-                                              "tension" },
+    { "world", "cfl", SPH, TR("is for the SPH methods; mlsmpm has its own, mlsmpm.cfl") },
+    { "world", "implicit_viscosity", SPH, TR("is for liquids of the SPH methods; liquids of mlsmpm have "
+                                                     "their own viscosity") },
+    { "world", "domain.contact_angle", SPH, TR("is for liquids of the SPH methods; mlsmpm has no "
+                                                      "surface tension") },
+    { "world", "domain.friction", SOLIDS, TR("is for solids of mlsmpm; what liquids do at a side say "
+                                                    "domain.walls and their viscosity") },
+    { "body", "friction", SPH, TR("is for liquids of the SPH methods; solids of mlsmpm rub by its "
+                                         "friction_coefficient") },
+    { "body", "contact_angle", SPH, TR("is for liquids of the SPH methods; mlsmpm has no surface "
+                                              "tension") },
 #define MOVED(key) { "body", key, FORCES, UNMOVED }
     MOVED("velocity"), MOVED("angular_velocity"), MOVED("force"), MOVED("torque"), MOVED("air_resistance"),
     MOVED("locked"), MOVED("hinge.point"), MOVED("hinge.axis"), MOVED("hinge.lower"), MOVED("hinge.upper"),
     MOVED("hinge.stiffness"), MOVED("hinge.damping"), MOVED("guide.axis"), MOVED("guide.lower"),
     MOVED("guide.upper"), MOVED("guide.stiffness"), MOVED("guide.damping"),
 #undef MOVED
-#define EDGE(key) { "body", key, BLADE, "is for a blade, which this body is not" }
+#define EDGE(key) { "body", key, BLADE, TR("is for a blade, which this body is not") }
     EDGE("edge_resistance"), EDGE("edge_angle"), EDGE("edge_start"), EDGE("edge_end"),
 #undef EDGE
-    { "body", "wall_thickness", VESSEL, "is for a vessel, which this body is not" },
-    { "body", "open_side", VESSEL, "is for a vessel, which this body is not" },
-#define RISING(key) { "solid", key, RISE, "is for a friction_rise, which this solid has not" }
+    { "body", "wall_thickness", VESSEL, TR("is for a vessel, which this body is not") },
+    { "body", "open_side", VESSEL, TR("is for a vessel, which this body is not") },
+#define RISING(key) { "solid", key, RISE, TR("is for a friction_rise, which this solid has not") }
     RISING("grain_diameter"), RISING("inertial_number"),
 #undef RISING
-    { "solid", "friction_angle", SLOPE, "is for a strength, which this solid has not" },
-    { "mlsmpm", "flip", FLIP, "is for \"transfer\": \"flip\"" },
-    { "mlsmpm", "xpic_order", XPIC, "is for \"transfer\": \"xpic\"" },
-    { "isph", "restart", GMRES, "is for \"solver\": \"gmres\"" },
-    { "eisph", "iteration", SWEEPS, "is pseudo-time, and one sweep of that is one of jacobi; allowed "
-                                    "with it are \"sweeps\": 2 or more, or 0" },
+    { "solid", "friction_angle", SLOPE, TR("is for a strength, which this solid has not") },
+    { "mlsmpm", "flip", FLIP, TR("is for \"transfer\": \"flip\"") },
+    { "mlsmpm", "xpic_order", XPIC, TR("is for \"transfer\": \"xpic\"") },
+    { "isph", "restart", GMRES, TR("is for \"solver\": \"gmres\"") },
+    { "eisph", "iteration", SWEEPS, TR("is pseudo-time, and one sweep of that is one of jacobi; allowed "
+                                    "with it are \"sweeps\": 2 or more, or 0") },
 #define WAVES(maker) \
     { maker, "regular.period", REGULAR, NOT_REGULAR }, { maker, "regular.phase", REGULAR, NOT_REGULAR }, \
     { maker, "irregular.peak_period", IRREGULAR, NOT_IRREGULAR }, \
     { maker, "irregular.spectrum", IRREGULAR, NOT_IRREGULAR }, \
     { maker, "irregular.seed", IRREGULAR, NOT_IRREGULAR }, \
     { maker, "irregular.components", IRREGULAR, NOT_IRREGULAR }, \
-    { maker, "irregular.peakedness", PEAK, "is for irregular waves of the spectrum jonswap" }, \
-    { maker, "ramp", RAMP, "is for regular and irregular waves" }
+    { maker, "irregular.peakedness", PEAK, TR("is for irregular waves of the spectrum jonswap") }, \
+    { maker, "ramp", RAMP, TR("is for regular and irregular waves") }
     WAVES("piston"), WAVES("flap"),
 #undef WAVES
     { "piston", "regular.order", REGULAR, NOT_REGULAR },
-    { "piston", "start", OWN, "is for waves of its own, which this piston does not make" },
+    { "piston", "start", OWN, TR("is for waves of its own, which this piston does not make") },
 };
 enum { KEYS = sizeof keys/sizeof *keys };
 
@@ -150,7 +150,7 @@ static void check(const tobi_scene *scene, tobi_source *source, const tobi_param
             is_there(scene, def, keys[k].reader)) continue;
         split(keys[k].key, outer, &inner);
         tobi_place middle = { place, outer, 0 }, key = { outer[0] ? &middle : place, inner, 0 };
-        tobi_source_mistake_at_key(source, &key, "%s", keys[k].why);
+        tobi_source_mistake_at_key(source, &key, "%s", tr(keys[k].why));
     }
 }
 

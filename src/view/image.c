@@ -94,7 +94,7 @@ typedef struct source { const unsigned char *data; size_t left; } source;
 static void get_bytes(png_structp png, png_bytep data, png_size_t bytes)
 {
     source *from = png_get_io_ptr(png);
-    if (bytes > from->left) png_error(png, "it ends early");
+    if (bytes > from->left) png_error(png, tr("it ends early"));
     memcpy(data, from->data, bytes);
     from->data += bytes, from->left -= bytes;
 }
@@ -122,9 +122,9 @@ static void decode(png_structp png, png_infop info, image_pixels *d)
     const int passes = png_set_interlace_handling(png);
     png_read_update_info(png, info);
     const size_t row = (size_t)d->width*3;
-    if (png_get_rowbytes(png, info) != row) png_error(png, "it has no colours that are known");
+    if (png_get_rowbytes(png, info) != row) png_error(png, tr("it has no colours that are known"));
     d->rgb = malloc(row*(size_t)d->height);
-    if (!d->rgb) png_error(png, "no memory for its pixels");
+    if (!d->rgb) png_error(png, tr("no memory for its pixels"));
     for (int pass = 0; pass < passes; pass++)
         for (int y = 0; y < d->height; y++) png_read_row(png, d->rgb + row*(size_t)y, NULL);
 }
@@ -136,7 +136,7 @@ static bool read_png(source *from, image_pixels *d)
     png_infop info = png ? png_create_info_struct(png) : NULL;
     if (!info || setjmp(png_jmpbuf(png))) {
         png_destroy_read_struct(&png, &info, NULL);
-        if (!d->why[0]) snprintf(d->why, sizeof d->why, "no memory");
+        if (!d->why[0]) snprintf(d->why, sizeof d->why, tr("no memory"));
         return false;
     }
     png_set_user_limits(png, IMAGE_MOST_PIXELS, IMAGE_MOST_PIXELS);
@@ -154,7 +154,7 @@ tobi_status tobi_image_read(const char *path, tobi_image **image, tobi_error *er
     TOBI_NEED(image, "the place for the image");
     *image = NULL;
     TOBI_NEED(path, "the path");
-    TOBI_TRY(tobi_plain_read(path, "texture", (int64_t)1 << 30, &text, &size, err));
+    TOBI_TRY(tobi_plain_read(path, tr("texture"), (int64_t)1 << 30, &text, &size, err));
     const unsigned char *data = (const unsigned char *)text;
     source from = { data, size };
     const bool jpeg = image_is_jpeg(data, size);

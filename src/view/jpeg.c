@@ -35,7 +35,7 @@ static void decode(struct jpeg_decompress_struct *jpeg, image_pixels *out)
 {
     jpeg_read_header(jpeg, TRUE);
     if (jpeg->num_components > 3) {
-        snprintf(out->why, IMAGE_WHY, "it has %d inks, as for print; allowed are gray and RGB",
+        snprintf(out->why, IMAGE_WHY, tr("it has %d inks, as for print; allowed are gray and RGB"),
                  jpeg->num_components);
         longjmp(((trouble *)(void *)jpeg->err)->back, 1);
     }

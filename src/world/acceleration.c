@@ -67,7 +67,7 @@ static tobi_status make_gravity(const tobi_gravity_def *def, tobi_drive *d, tobi
         return tobi_fail(err, TOBI_INVALID, "gravity in time needs a file or an amplitude with its period");
     if (swings != (def->period > 0))
         return tobi_fail(err, TOBI_INVALID, "gravity in time has %s; a swing needs both",
-                         swings ? "an amplitude without a period" : "a period without an amplitude");
+                         swings ? tr("an amplitude without a period") : tr("a period without an amplitude"));
     if (def->file) TOBI_TRY(tobi_keyframes_load_gravity(def->file, d->given, &d->rows, err));
     return swings ? make_swing(def, &d->swing, err) : TOBI_OK;
 }
@@ -100,7 +100,7 @@ tobi_status tobi_world_set_gravity_in_time(tobi_world *w, const tobi_gravity_def
 {
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
-    TOBI_TRY(need_drive(w, "gravity in time", err));
+    TOBI_TRY(need_drive(w, tr("gravity in time"), err));
     free_gravity(w->drive);
     return make_gravity(def, w->drive, err);
 }
@@ -110,7 +110,7 @@ tobi_status tobi_world_set_central_force(tobi_world *w, const tobi_central_def *
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
     TOBI_TRY(tobi_param_check(&tobi_central_table, def, err));
-    TOBI_TRY(need_drive(w, "central force", err));
+    TOBI_TRY(need_drive(w, tr("central force"), err));
     w->drive->central = *def;
     return TOBI_OK;
 }
@@ -119,7 +119,7 @@ tobi_status tobi_world_set_frame(tobi_world *w, tobi_motion_fn motion, void *use
 {
     TOBI_NEED_WORLD(w);
     TOBI_NEED(motion, "the motion");
-    TOBI_TRY(need_drive(w, "frame", err));
+    TOBI_TRY(need_drive(w, tr("frame"), err));
     double direction[3];
     if (motion == tobi_motion_positions && tobi_motion_absorber(user, direction))
         return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "a frame absorbs no waves; a body that "

@@ -34,7 +34,8 @@ static tobi_status compare(const tobi_system *s, const tobi_region *before, cons
         for (int a = 0; a < 3; a++) x[a] = (&s->particles.position[i].x)[a] + s->box.lower[a];
         if (!(tobi_region_depth(before, tree, x, s->box.dimension, 2*half) > half)) continue;
         status = tobi_fail(err, TOBI_INVALID, "%s '%s': fill[%d] overlaps fill[%d] of '%s': both have "
-                           "particles at (%.4g, %.4g, %.4g) m; regions may touch", solids ? "solid" : "fluid",
+                           "particles at (%.4g, %.4g, %.4g) m; regions may touch", solids ? tr("solid")
+                           : tr("fluid"),
                            own, r->number, before->number, other, x[0], x[1], x[2]);
         tobi_at_key(err, status, "%ss[%d].fill[%d]", solids ? "solid" : "fluid", r->owner, r->number);
     }

@@ -42,7 +42,7 @@ tobi_status tobi_beside_note(tobi_world *w, tobi_error *err)
     for (int k = 0; k < w->sim.body_count; k++) {
         const tobi_body *b = &w->sim.bodies[k];
         double low[3], high[3];
-        char text[200], axes[8] = "";
+        char text[TOBI_NOTE], axes[8] = "";
         int length = 0;
         if (b->rigid.kind == TOBI_PRESCRIBED || is_held(w, k)) continue;
         tobi_bvh_box(b->bvh, low, high);
@@ -53,8 +53,9 @@ tobi_status tobi_beside_note(tobi_world *w, tobi_error *err)
             axes[length++] = "xyz"[a];
         }
         if (!length) continue;
-        snprintf(text, sizeof text, "does not go through the periodic sides along %s: the run ends where it "
-                 "comes to one; \"locked\": \"%s\", or a larger domain, keeps it from there\n", axes, axes);
+        snprintf(text, sizeof text, tr("does not go through the periodic sides along %s: the run ends where "
+                 "it comes to one; \"locked\": \"%s\", or a larger domain, keeps it from there\n"), axes,
+                 axes);
         TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
     }
     return TOBI_OK;

@@ -10,8 +10,8 @@
 /* Why a body cannot hold a solid, NULL if it can. */
 static const char *find_reason(const tobi_body *b)
 {
-    if (b->blade) return "is a blade, which cuts solids";
-    if (b->absent[0] > 0) return "is absent for a time";
+    if (b->blade) return tr("is a blade, which cuts solids");
+    if (b->absent[0] > 0) return tr("is absent for a time");
     return NULL;
 }
 
@@ -100,7 +100,7 @@ static tobi_status start_clamp(const tobi_world *w, int solid, int n, tobi_error
         tobi_fail(err, TOBI_INVALID, "solid '%s' is clamped to '%s', but none of its particles starts in "
                   "that body or nearer than a spacing, %.3g m, to it%s", d->name,
                   w->sim.bodies[d->clamp[n]].name, s->smoothing.spacing,
-                  n > 0 ? ", and belongs to no body named before" : "");
+                  n > 0 ? tr(", and belongs to no body named before") : "");
     return at_name(d, solid, n, status, err);
 }
 
@@ -109,10 +109,11 @@ static tobi_status start_clamp(const tobi_world *w, int solid, int n, tobi_error
 static tobi_status note_push(tobi_world *w, const tobi_solid *d, const tobi_body *b, tobi_error *err)
 {
     const tobi_method *m = w->system[0].method;
-    char text[240];
+    char text[TOBI_NOTE];
     if (!m->rough_forces || b->rigid.kind == TOBI_PRESCRIBED) return TOBI_OK;
-    snprintf(text, sizeof text, "by %s the pressure on the section between it and body '%s' does not cancel: "
-             "under water both are pushed while all is at rest; dfsph does not do that\n", m->name, b->name);
+    snprintf(text, sizeof text, tr("by %s the pressure on the section between it and body '%s' does not "
+             "cancel: under water both are pushed while all is at rest; dfsph does not do that\n"), m->name,
+             b->name);
     return tobi_world_add_notes(w, "solid", d->name, text, err);
 }
 

@@ -74,12 +74,13 @@ static double find_neat(const tobi_world *w, double wish, int up)
 }
 
 /* "; 0.0083 m or 0.0076 m would fit" */
-static void tell_neat(const tobi_world *w, double wish, char text[80])
+static void tell_neat(const tobi_world *w, double wish, char text[TOBI_NOTE])
 {
     const double below = find_neat(w, wish, 0), above = find_neat(w, wish, 1);
     text[0] = '\0';
-    if (below > 0 && above > 0) snprintf(text, 80, "; %.5g m or %.5g m would fit", below, above);
-    else if (below > 0 || above > 0) snprintf(text, 80, "; %.5g m would fit", below > 0 ? below : above);
+    if (below > 0 && above > 0) snprintf(text, TOBI_NOTE, tr("; %.5g m or %.5g m would fit"), below, above);
+    else if (below > 0 || above > 0) snprintf(text, TOBI_NOTE, tr("; %.5g m would fit"), below > 0 ? below
+                                              : above);
 }
 
 /* What the particles of the boxes of a fluid hold over the boxes' volume; -1: of all fluids. */
@@ -97,12 +98,12 @@ static double find_amount(const tobi_world *w, int fluid)
 /* One spacing for all: a fluid alone may have more or less than its boxes. */
 static tobi_status note_fluids(tobi_world *w, tobi_error *err)
 {
-    char text[100];
+    char text[TOBI_NOTE];
     for (int f = 0; f < w->system[0].fluid_count; f++) {
         const double amount = find_amount(w, f) - 1;
         if (fabs(amount) < TOLD) continue;
-        snprintf(text, sizeof text, "its particles hold %.1f %% %s than its boxes\n", 100*fabs(amount),
-                 amount > 0 ? "more" : "less");
+        snprintf(text, sizeof text, tr("its particles hold %.1f %% %s than its boxes\n"), 100*fabs(amount),
+                 amount > 0 ? tr("more") : tr("less"));
         TOBI_TRY(tobi_world_add_notes(w, "fluid", w->system[0].fluid[f].name, text, err));
     }
     return TOBI_OK;
@@ -113,20 +114,21 @@ tobi_status tobi_fit_note(tobi_world *w, tobi_error *err)
     const double wish = w->sim.def.spacing, taken = w->system[0].smoothing.spacing;
     const double amount = find_amount(w, -1) - 1;
     tobi_fit fit = { wish, 0 };
-    char text[300], neat[80];
+    char text[TOBI_NOTE], neat[TOBI_NOTE];
     if (w->system[0].solid_count > 0) return TOBI_OK;
     tell_neat(w, wish, neat);
     if (fabs(amount) > LITTLE) {
-        snprintf(text, sizeof text, "%.5g m: whole layers do not fit, so that the particles hold %.1f %% %s "
-                 "than the boxes of liquid%s\n", wish, 100*fabs(amount), amount > 0 ? "more" : "less", neat);
+        snprintf(text, sizeof text, tr("%.5g m: whole layers do not fit, so that the particles hold %.1f %% "
+                 "%s than the boxes of liquid%s\n"), wish, 100*fabs(amount), amount > 0 ? tr("more")
+                 : tr("less"), neat);
         return tobi_world_add_notes(w, "world", "spacing", text, err);
     }
     TOBI_TRY(note_fluids(w, err));
     if (fabs(taken/wish - 1) < LITTLE || !try_spacing(w, taken, &fit)) return TOBI_OK;
-    size_t used = (size_t)snprintf(text, sizeof text, "%.5g m is taken instead of %.5g m, so that whole "
-                                   "layers hold what the boxes of liquid hold", taken, wish);
+    size_t used = (size_t)snprintf(text, sizeof text, tr("%.5g m is taken instead of %.5g m, so that whole "
+                                   "layers hold what the boxes of liquid hold"), taken, wish);
     if (fit.stretch > MUCH)
-        used += (size_t)snprintf(text + used, sizeof text - used, "; some are stretched by %.1f %%%s",
+        used += (size_t)snprintf(text + used, sizeof text - used, tr("; some are stretched by %.1f %%%s"),
                                  100*fit.stretch, neat);
     snprintf(text + used, sizeof text - used, "\n");
     return tobi_world_add_notes(w, "world", "spacing", text, err);

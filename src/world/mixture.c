@@ -18,7 +18,7 @@ tobi_status tobi_mixture_check(const tobi_method *m, const tobi_fluid_def *fluid
         return tobi_fail(err, TOBI_UNSUPPORTED, "is %.10g kg/m3 and that of fluid '%s' is %.10g kg/m3: 1 : "
                          "%.6g; %s computes fluids up to 1 : %g%s", fluid->density, name, other->density,
                          ratio, m->name, m->density_ratio,
-                         m->density_ratio < TOBI_DENSITY_RATIO ? ", isph up to 1 : 1000" : "");
+                         m->density_ratio < TOBI_DENSITY_RATIO ? tr(", isph up to 1 : 1000") : "");
     if (!openings) return TOBI_OK;
     return tobi_fail(err, TOBI_UNSUPPORTED, "is %.10g kg/m3 and that of fluid '%s' is %.10g kg/m3; beside "
                      "inlets or outlets %s takes fluids of one density", fluid->density, name, other->density,

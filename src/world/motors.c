@@ -18,9 +18,9 @@ static const double JUMP = 1e-6;         /* in the unit of the motor: smaller, i
 /* The words of a hinge and of a guide. */
 static const struct { const char *joint, *place, *unit, *load, *most, *has; } words[] = {
     { "hinge", "angle", "degrees", "torque", "torque_max",
-      "hinge that it turns; a hinge has point and axis" },
+      TR("hinge that it turns; a hinge has point and axis") },
     { "guide", "position", "m", "force", "force_max",
-      "guide that it moves it along; a guide has an axis" } };
+      TR("guide that it moves it along; a guide has an axis") } };
 
 struct tobi_motor_source {
     int joint, body;             /* as of tobi_motors_add; from the start on `joint` is a constraint      */
@@ -65,13 +65,13 @@ static tobi_status check_keys(const tobi_motor_def *d, int slides, tobi_error *e
     const int count = is_number(d->speed) + is_number(d->angle) + is_number(d->torque) + (d->file != NULL);
     if (count != 1)
         return tobi_fail(err, TOBI_INVALID, "a motor has one of speed, %s, %s and file; this one has %s",
-                         words[slides].place, load, count ? "several" : "none");
+                         words[slides].place, load, count ? tr("several") : tr("none"));
     if (d->file && (d->amplitude != 0 || d->period != 0 || d->phase != 0 || d->start != 0 || d->ramp != 0))
-        return refuse(err, "file", "a motor with a file has no amplitude, period, phase, start and ramp: the "
-                      "file says all");
+        return refuse(err, "file", tr("a motor with a file has no amplitude, period, phase, start and ramp: "
+                      "the file says all"));
     if ((d->amplitude != 0) != (d->period > 0))
-        return refuse(err, d->period > 0 ? "period" : "amplitude", "a motor that swings has an amplitude and "
-                                                                   "a period; this one has one of them");
+        return refuse(err, d->period > 0 ? "period" : "amplitude", tr("a motor that swings has an amplitude "
+                                                                   "and a period; this one has one of them"));
     return is_number(d->torque) ? refuse_most(d, slides, err) : TOBI_OK;
 }
 
@@ -177,7 +177,7 @@ tobi_status tobi_motors_add(tobi_world *w, const tobi_motor_def *def, const char
     const tobi_body *b = joint < 0 ? &w->sim.bodies[body] : NULL;
     if (b && b->rigid.joint.kind != (slides ? TOBI_JOINT_GUIDE : TOBI_JOINT_HINGE))
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s' has a motor and no %s", b->name,
-                                          words[slides].has), "%s", key);
+                                          tr(words[slides].has)), "%s", key);
     TOBI_TRY(place_error(err, make_source(def, &m, err), key));
     tobi_motor_source *more = realloc(w->motors, (size_t)(w->motor_count + 1)*sizeof *more);
     if (!more) {
@@ -250,15 +250,16 @@ static tobi_status note_jump(tobi_world *w, const tobi_motor_source *m, double t
     const int speed = m->kind == TOBI_MOTOR_SPEED;
     const double soon = SOON*(1 + t);
     double before, after;
-    char text[300];
+    char text[TOBI_NOTE];
     TOBI_TRY(find_value(m, t > 0 ? t - soon : 0, &before, err));
     TOBI_TRY(find_value(m, t + soon, &after, err));
     if (t == 0 && speed) before = tobi_constraint_rate(j, w->sim.bodies)*(m->slides ? 1 : 180/acos(-1));
     if (!(fabs(after - before) > JUMP)) return TOBI_OK;
-    snprintf(text, sizeof text, "its motor asks for %.4g %s%s at %.4g s: the body %s that in one step, by as "
-             "large a %s as it takes; %s, or a %s, lets it get there in time\n", after, words[m->slides].unit,
-             speed ? "/s" : "", t, speed ? "has" : "goes", words[m->slides].load,
-             m->rows ? "a file that begins where the body is" : "a ramp", words[m->slides].most);
+    snprintf(text, sizeof text, tr("its motor asks for %.4g %s%s at %.4g s: the body %s that in one step, by "
+             "as large a %s as it takes; %s, or a %s, lets it get there in time\n"), after,
+             words[m->slides].unit,
+             speed ? "/s" : "", t, speed ? tr("has") : tr("goes"), words[m->slides].load,
+             m->rows ? tr("a file that begins where the body is") : tr("a ramp"), words[m->slides].most);
     return tobi_world_add_notes(w, m->body < 0 ? "joint" : "body", j->name, text, err);
 }
 

@@ -5,10 +5,18 @@
 #include "rigid/lines.h"
 #include <string.h>
 
+/* For the catalogue of texts: they come through variables. */
+static const char *const kinds[] __attribute__((unused)) = {
+    TR("fluid"), TR("solid"), TR("body"), TR("probe"), TR("line"), TR("joint"), TR("inlet"), TR("outlet"),
+    TR("porous zone"), TR("world"), TR("camera of"), TR("contact_angle of"), TR("temperature"),
+    TR("concentration")
+};
+
 static tobi_status refuse(const char *kind, const char *other, int number, const char *name, tobi_error *err)
 {
-    return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "%s '%s': %s %d has that name already", kind, name,
-                                      other, number), "name");
+    return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "%s '%s': %s %d has that name already", tr(kind),
+                                      name,
+                                      tr(other), number), "name");
 }
 
 tobi_status tobi_names_check_matter(const tobi_world *w, const char *kind, const char *name, tobi_error *err)

@@ -168,21 +168,21 @@ static tobi_status note_region(tobi_world *w, const tobi_region *r, const tally 
                                tobi_error *err)
 {
     const char *unit = w->system[r->system].box.dimension == 3 ? "kg" : "kg/m";
-    char text[500], debris[80] = "", why[200];
+    char text[3*TOBI_NOTE], debris[TOBI_NOTE] = "", why[TOBI_NOTE];
     double fits = 0, finest = 0;
     if (r->shape.triangle_count) TOBI_TRY(find_spacing(&w->system[r->system], r, parts, &fits, &finest, err));
     if (sum->fragments)
-        snprintf(debris, sizeof debris, " and %d of debris (%.3g %s)", sum->fragments, sum->debris, unit);
+        snprintf(debris, sizeof debris, tr(" and %d of debris (%.3g %s)"), sum->fragments, sum->debris, unit);
     if (fits > 0)
-        snprintf(why, sizeof why, "parts of its mesh are thinner than the spacing, %.4g m; at %.4g m it is "
-                 "whole", w->system[r->system].smoothing.spacing, fits);
+        snprintf(why, sizeof why, tr("parts of its mesh are thinner than the spacing, %.4g m; at %.4g m it "
+                 "is whole"), w->system[r->system].smoothing.spacing, fits);
     else if (finest > 0)
-        snprintf(why, sizeof why, "parts of its mesh are far thinner than the spacing, %.4g m, or do not "
-                 "touch; at %.4g m it is not whole either", w->system[r->system].smoothing.spacing, finest);
+        snprintf(why, sizeof why, tr("parts of its mesh are far thinner than the spacing, %.4g m, or do not "
+                 "touch; at %.4g m it is not whole either"), w->system[r->system].smoothing.spacing, finest);
     else
-        snprintf(why, sizeof why, "parts of it are thinner than the spacing, %.4g m, or bodies, planes and "
-                 "sides part it", w->system[r->system].smoothing.spacing);
-    snprintf(text, sizeof text, "fill[%d] starts in %d pieces (%s %s)%s: %s\n", r->number, sum->pieces,
+        snprintf(why, sizeof why, tr("parts of it are thinner than the spacing, %.4g m, or bodies, planes "
+                 "and sides part it"), w->system[r->system].smoothing.spacing);
+    snprintf(text, sizeof text, tr("fill[%d] starts in %d pieces (%s %s)%s: %s\n"), r->number, sum->pieces,
              sum->masses, unit, debris, why);
     return tobi_world_add_notes(w, "solid", w->system[r->system].solids[r->owner].name, text, err);
 }

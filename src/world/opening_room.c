@@ -63,13 +63,13 @@ static int64_t count_beside(const tobi_system *s, const tobi_opening *o)
 tobi_status tobi_openings_note_pools(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = &w->system[0];
-    char text[300];
+    char text[TOBI_NOTE];
     for (int k = 0; k < w->sim.opening_count; k++) {
         const tobi_opening *o = &w->sim.openings[k];
         if (o->outlet || count_beside(s, o) < FEW) continue;
-        snprintf(text, sizeof text, "lies in liquid: behind its buffer a hole is left free, %.3g m deep, and "
-                 "the liquid beside it falls in at the start; put a body around the hole, or the inlet above "
-                 "the liquid or at a side\n", (TOBI_OPENING_BEHIND - 1)*o->depth);
+        snprintf(text, sizeof text, tr("lies in liquid: behind its buffer a hole is left free, %.3g m deep, "
+                 "and the liquid beside it falls in at the start; put a body around the hole, or the inlet "
+                 "above the liquid or at a side\n"), (TOBI_OPENING_BEHIND - 1)*o->depth);
         TOBI_TRY(tobi_world_add_notes(w, "inlet", o->name, text, err));
     }
     return TOBI_OK;
@@ -87,15 +87,15 @@ tobi_status tobi_openings_note(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = &w->system[0];
     const char *outlet = find_free_outlet(&w->sim);
-    char text[300];
+    char text[TOBI_NOTE];
     if (w->sim.opening_count == 0 || (s->method->fills_pipes && !outlet)) return TOBI_OK;
     if ((double)s->particles.count*s->smoothing.volume < FULL*measure_domain(s)) return TOBI_OK;
     if (s->method->fills_pipes)
-        snprintf(text, sizeof text, "where the pressure falls below 0 a full pipe gets cavities (mass_held "
-                 "in history.csv falls); a pressure of the outlet '%s', density x speed^2 of the fastest "
-                 "place, keeps it full\n", outlet);
+        snprintf(text, sizeof text, tr("where the pressure falls below 0 a full pipe gets cavities "
+                 "(mass_held in history.csv falls); a pressure of the outlet '%s', density x speed^2 of the "
+                 "fastest place, keeps it full\n"), outlet);
     else
-        snprintf(text, sizeof text, "%s crowds or loses liquid where inlets and outlets leave no free "
-                 "surface, as in a full pipe; isph keeps it\n", s->method->name);
+        snprintf(text, sizeof text, tr("%s crowds or loses liquid where inlets and outlets leave no free "
+                 "surface, as in a full pipe; isph keeps it\n"), s->method->name);
     return tobi_world_add_notes(w, "world", "method", text, err);
 }

@@ -21,7 +21,7 @@ static const double SOON = 1e-6;
 
 static tobi_status refuse(const tobi_opening *o, const char *key, const char *why, tobi_error *err)
 {
-    return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "%s '%s' %s", o->outlet ? "outlet" : "inlet",
+    return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "%s '%s' %s", o->outlet ? tr("outlet") : tr("inlet"),
                                       o->name, why), "%s", key);
 }
 
@@ -44,7 +44,7 @@ static tobi_status set_axes(tobi_opening *o, const double normal[3], const doubl
     memcpy(o->normal, normal, sizeof o->normal);
     if (dimension == 2) o->normal[2] = 0;
     if (!(vec3_length(o->normal) > 0))
-        return refuse(o, "normal", "has a normal of zero; it must have a direction", err);
+        return refuse(o, "normal", tr("has a normal of zero; it must have a direction"), err);
     vec3_normalize(o->normal);
     if (dimension == 2) {
         o->along[0] = -o->normal[1];
@@ -59,7 +59,7 @@ static tobi_status set_axes(tobi_opening *o, const double normal[3], const doubl
     vec3_normalize(o->along);
     vec3_add_scaled(o->along, o->along, -vec3_dot(o->along, n), n);
     if (!(vec3_length(o->along) > 1e-6))
-        return refuse(o, "along", "has its width along its normal; allowed is across", err);
+        return refuse(o, "along", tr("has its width along its normal; allowed is across"), err);
     vec3_normalize(o->along);
     vec3_cross(o->across, o->normal, o->along);
     return TOBI_OK;
@@ -71,11 +71,11 @@ static tobi_status set_patch(tobi_opening *o, double width, double height, doubl
     o->half[0] = 0.5*width;
     o->half[1] = dimension == 2 ? 0 : 0.5*height;
     o->radius = dimension == 2 ? 0 : radius;
-    if (dimension == 2) return width > 0 ? TOBI_OK : refuse(o, "width", "has no width", err);
+    if (dimension == 2) return width > 0 ? TOBI_OK : refuse(o, "width", tr("has no width"), err);
     if ((radius > 0) == (width > 0 || height > 0))
-        return refuse(o, "radius", "needs a width and a height, or a radius", err);
+        return refuse(o, "radius", tr("needs a width and a height, or a radius"), err);
     return radius > 0 || (width > 0 && height > 0)
-        ? TOBI_OK : refuse(o, "width", "needs a height beside its width", err);
+        ? TOBI_OK : refuse(o, "width", tr("needs a height beside its width"), err);
 }
 
 /* A lattice over the patch; n columns into out, or only their number. */
@@ -144,16 +144,16 @@ static tobi_status check_place(const tobi_opening *o, const tobi_box *box, const
 {
     const double u = o->radius > 0 ? o->radius : o->half[0], v = o->radius > 0 ? o->radius : o->half[1];
     const double far = o->outlet ? tobi_outlet_depth(o, c) : -o->depth;
-    char text[200];
+    char text[TOBI_NOTE];
     for (int k = 0; k < 8; k++) {
         double x[3];
         place(o, k & 4 ? far : 0, k & 1 ? u : -u, k & 2 ? v : -v, x);
         for (int a = 0; a < box->dimension; a++) {
             const double slack = 1e-6*box->size[a];
             if (x[a] >= -slack && x[a] <= box->size[a] + slack) continue;
-            snprintf(text, sizeof text, "reaches out of the domain at %c = %.4g m: %s its plane it needs "
-                     "%.4g m for a buffer of particles", "xyz"[a], x[a] + box->lower[a],
-                     o->outlet ? "beyond" : "behind", fabs(far));
+            snprintf(text, sizeof text, tr("reaches out of the domain at %c = %.4g m: %s its plane it needs "
+                     "%.4g m for a buffer of particles"), "xyz"[a], x[a] + box->lower[a],
+                     o->outlet ? tr("beyond") : tr("behind"), fabs(far));
             return refuse(o, "centre", text, err);
         }
     }
@@ -182,13 +182,13 @@ static int is_in_buffer(const tobi_opening *o, const tobi_smoothing_constants *c
 static tobi_status check_others(const tobi_world *w, const tobi_opening *o, const double x[3],
                                 tobi_error *err)
 {
-    char text[200];
+    char text[TOBI_NOTE];
     for (int k = 0; k < w->sim.opening_count; k++) {
         const tobi_opening *other = &w->sim.openings[k];
         if (other == o || !is_in_buffer(other, &w->system[0].smoothing, x)) continue;
         const double *lower = w->system[0].box.lower;
-        snprintf(text, sizeof text, "has its buffer where %s '%s' has its own, at (%.4g, %.4g, %.4g) m",
-                 other->outlet ? "outlet" : "inlet", other->name, x[0] + lower[0], x[1] + lower[1],
+        snprintf(text, sizeof text, tr("has its buffer where %s '%s' has its own, at (%.4g, %.4g, %.4g) m"),
+                 other->outlet ? tr("outlet") : tr("inlet"), other->name, x[0] + lower[0], x[1] + lower[1],
                  x[2] + lower[2]);
         return refuse_start(w, o, "centre", text, err);
     }
@@ -198,11 +198,11 @@ static tobi_status check_others(const tobi_world *w, const tobi_opening *o, cons
 static tobi_status check_point(const tobi_world *w, const tobi_opening *o, const double x[3],
                                tobi_error *err)
 {
-    char text[200];
+    char text[TOBI_NOTE];
     for (int b = 0; b < w->sim.body_count; b++) {
         if (!tobi_bvh_inside(w->sim.bodies[b].bvh, x)) continue;
         const double *lower = w->system[0].box.lower;
-        snprintf(text, sizeof text, "lies inside body '%s' with its buffer, at (%.4g, %.4g, %.4g) m",
+        snprintf(text, sizeof text, tr("lies inside body '%s' with its buffer, at (%.4g, %.4g, %.4g) m"),
                  w->sim.bodies[b].name, x[0] + lower[0], x[1] + lower[1], x[2] + lower[2]);
         return refuse(o, "centre", text, err);
     }
@@ -232,7 +232,7 @@ static tobi_status add(tobi_world *w, const tobi_opening *o, int limit, tobi_err
         return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no inlets and outlets; the SPH methods have",
                          w->system[0].method->name);
     if (same >= limit) return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d %s", limit,
-                                        o->outlet ? "outlets" : "inlets");
+                                        o->outlet ? tr("outlets") : tr("inlets"));
     TOBI_TRY(tobi_names_check_opening(w, o->outlet, o->name, err));
     TOBI_TRY(check_place(o, &w->system[0].box, &w->system[0].smoothing, err));
     TOBI_TRY(check_bodies(w, o, err));
@@ -251,13 +251,13 @@ static void set_name(tobi_opening *o, const char *name, const double centre[3], 
 
 static tobi_status set_fluid(tobi_opening *o, const tobi_world *w, const char *fluid, tobi_error *err)
 {
-    char text[160];
+    char text[TOBI_NOTE];
     for (int f = 0; f < w->system[0].fluid_count; f++)
         if (!fluid || strcmp(w->system[0].fluid[f].name, fluid) == 0) {
             o->fluid = f;
             return TOBI_OK;
         }
-    snprintf(text, sizeof text, "lets '%s' in, which is no fluid", fluid ? fluid : "");
+    snprintf(text, sizeof text, tr("lets '%s' in, which is no fluid"), fluid ? fluid : "");
     return refuse(o, "fluid", text, err);
 }
 
@@ -266,20 +266,20 @@ static tobi_status set_speed(tobi_opening *o, const tobi_world *w, const tobi_in
 {
     const int dimension = w->system[0].box.dimension;
     const double most = w->sim.def.speed_limit > 0 ? w->sim.def.speed_limit : TOBI_SPEED_LIMIT;
-    char text[200];
+    char text[TOBI_NOTE];
     if ((def->speed > 0) + (def->flow_rate > 0) + (def->file != NULL) != 1)
-        return refuse(o, "speed", "needs a speed, a flow_rate or a file, one of them", err);
+        return refuse(o, "speed", tr("needs a speed, a flow_rate or a file, one of them"), err);
     if (def->file && (def->start > 0 || def->stop > 0 || def->ramp > 0))
-        return refuse(o, "file", "has a file, which has times of its own: start, stop and ramp are not for "
-                      "it", err);
+        return refuse(o, "file", tr("has a file, which has times of its own: start, stop and ramp are not "
+                      "for it"), err);
     const double area = tobi_opening_area(o, dimension);
     if (def->file) TOBI_TRY(tobi_at_key(err, tobi_opening_load_flow(o, def->file, area, err), "file"));
     else o->speed = def->speed > 0 ? def->speed : def->flow_rate/area;
-    if (!(o->speed > 0)) return refuse(o, "file", "has a file in which nothing flows", err);
+    if (!(o->speed > 0)) return refuse(o, "file", tr("has a file in which nothing flows"), err);
     const double peak = o->speed*(o->parabolic ? o->radius > 0 ? 2 : dimension == 2 ? 1.5 : 2.25 : 1);
     if (peak <= most) return TOBI_OK;
-    snprintf(text, sizeof text, "needs %.4g m/s at its fastest place for that flow; the limit is %.4g m/s: a "
-             "larger patch or less flow is allowed", peak, most);
+    snprintf(text, sizeof text, tr("needs %.4g m/s at its fastest place for that flow; the limit is %.4g "
+             "m/s: a larger patch or less flow is allowed"), peak, most);
     return refuse(o, def->speed > 0 ? "speed" : def->file ? "file" : "flow_rate", text, err);
 }
 
@@ -294,7 +294,7 @@ static tobi_status make_inlet(const tobi_world *w, const tobi_inlet_def *def, to
     TOBI_TRY(set_patch(o, def->width, def->height, def->radius, s->box.dimension, err));
     TOBI_TRY(set_fluid(o, w, def->fluid, err));
     TOBI_TRY(set_speed(o, w, def, err));
-    if (def->stop > 0 && def->stop <= def->start) return refuse(o, "stop", "stops before it starts", err);
+    if (def->stop > 0 && def->stop <= def->start) return refuse(o, "stop", tr("stops before it starts"), err);
     return make_columns(o, &s->smoothing, err);
 }
 
@@ -328,10 +328,11 @@ tobi_status tobi_world_add_outlet(tobi_world *w, const tobi_outlet_def *def, tob
     set_name(&o, def->name, def->centre, box);
     const double *g = w->sim.def.gravity;
     if (level && !(g[0]*g[0] + g[1]*g[1] + g[2]*g[2] > 0))
-        return refuse(&o, "level", "has a level, and without gravity nothing is up; allowed is a pressure",
+        return refuse(&o, "level",
+                      tr("has a level, and without gravity nothing is up; allowed is a pressure"),
                       err);
     if (pressure && level)
-        return refuse(&o, "pressure", "has a level and a pressure; it may have one", err);
+        return refuse(&o, "pressure", tr("has a level and a pressure; it may have one"), err);
     TOBI_TRY(set_axes(&o, def->normal, def->along, box->dimension, err));
     TOBI_TRY(set_patch(&o, def->width, def->height, def->radius, box->dimension, err));
     return add(w, &o, TOBI_OUTLET_LIMIT, err);
@@ -406,8 +407,8 @@ static tobi_status check_outlet(const tobi_world *w, const tobi_opening *o, tobi
         else beyond++;
     }
     if (beyond <= before || before > 0) return TOBI_OK;
-    return refuse_start(w, o, "normal", "faces inwards: liquid lies on the side that its normal points to, "
-                        "and none on the other", err);
+    return refuse_start(w, o, "normal", tr("faces inwards: liquid lies on the side that its normal points "
+                        "to, and none on the other"), err);
 }
 
 tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err)

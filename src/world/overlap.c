@@ -91,12 +91,12 @@ tobi_status tobi_overlap_note_solids(tobi_world *w, tobi_error *err)
         const tobi_region *r = &w->regions[k];
         const double d = w->system[0].smoothing.spacing;   /* of the water, whose kernels reach through */
         double least = INFINITY;
-        char text[200];
+        char text[TOBI_NOTE];
         if (&w->system[r->system] != solids || r->shape.triangle_count) continue;
         for (int a = 0; a < solids->box.dimension; a++) least = fmin(least, r->upper[a] - r->lower[a]);
         if (!(least < THIN*d*(1 - 1e-6))) continue;
-        snprintf(text, sizeof text, "fill[%d] is %.3g m thin, less than two spacings: water on both sides "
-                 "meets through it; a spacing of %.3g m would do\n", r->number, least, least/THIN);
+        snprintf(text, sizeof text, tr("fill[%d] is %.3g m thin, less than two spacings: water on both sides "
+                 "meets through it; a spacing of %.3g m would do\n"), r->number, least, least/THIN);
         TOBI_TRY(tobi_world_add_notes(w, "solid", solids->solids[r->owner].name, text, err));
     }
     return TOBI_OK;

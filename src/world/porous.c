@@ -26,12 +26,13 @@ static tobi_status check_kind(const tobi_porous_def *d, tobi_error *err)
               stems = d->stem_number > 0 || d->stem_diameter > 0,
               screen = d->screen_loss > 0, direct = d->linear > 0 || d->quadratic > 0;
     if (stones + stems + screen + direct != 1)
-        REFUSE("", "porous zone '%s' has %s of stones, stems, screen and resistance; allowed is one, with a "
-               "value above 0", d->name, stones + stems + screen + direct ? "more than one" : "none");
+        REFUSE("", tr("porous zone '%s' has %s of stones, stems, screen and resistance; allowed is one, with "
+               "a value above 0"), d->name, stones + stems + screen + direct ? tr("more than one")
+               : tr("none"));
     if (stones && !(d->stone_size > 0 && d->porosity > 0))
-        REFUSE("stones", "porous zone '%s': stones have a size and a porosity", d->name);
+        REFUSE("stones", tr("porous zone '%s': stones have a size and a porosity"), d->name);
     if (stems && !(d->stem_number > 0 && d->stem_diameter > 0))
-        REFUSE("stems", "porous zone '%s': stems have a number and a diameter", d->name);
+        REFUSE("stems", tr("porous zone '%s': stems have a number and a diameter"), d->name);
     return TOBI_OK;
 }
 
@@ -44,17 +45,17 @@ static tobi_status find_direction(const tobi_world *w, const tobi_porous_def *de
     if (!given && z->kind == TOBI_POROUS_ALONG) tobi_porous_thin_direction(z, dimension, z->direction);
     if (z->radial) return TOBI_OK;
     if (z->kind == TOBI_POROUS_ALONG && !(vec3_length(z->direction) > 0))
-        REFUSE("direction", "porous zone '%s': a screen in a cylinder without an inner radius has no thin "
-               "side; give its direction", def->name);
+        REFUSE("direction", tr("porous zone '%s': a screen in a cylinder without an inner radius has no thin "
+               "side; give its direction"), def->name);
     if (!given && z->kind == TOBI_POROUS_ACROSS) vec3_sub(z->direction, z->direction, w->sim.def.gravity);
     if (!(vec3_length(z->direction) > 0))
-        REFUSE("direction", "porous zone '%s': stems stand upwards, and there is no gravity; give their "
-               "direction", def->name);
+        REFUSE("direction", tr("porous zone '%s': stems stand upwards, and there is no gravity; give their "
+               "direction"), def->name);
     vec3_normalize(z->direction);
     if (dimension == 3 || z->direction[2] == 0) return TOBI_OK;
     if (z->kind == TOBI_POROUS_ALONG || z->direction[0] != 0 || z->direction[1] != 0)
-        REFUSE("direction", "porous zone '%s': a direction in 2-D lies in the plane, or is that of stems "
-               "across it", def->name);
+        REFUSE("direction", tr("porous zone '%s': a direction in 2-D lies in the plane, or is that of stems "
+               "across it"), def->name);
     z->kind = TOBI_POROUS_ALL;
     z->direction[2] = 0;
     return TOBI_OK;
@@ -81,8 +82,8 @@ static tobi_status check_drag(const tobi_world *w, const char *name, const tobi_
         viscosity = fmax(viscosity, s->fluid[k].viscosity/s->fluid[k].density);
     const double linear = z->linear + z->per_viscosity*viscosity;
     if (linear <= STRONGEST && z->quadratic <= STRONGEST) return TOBI_OK;
-    REFUSE("", "porous zone '%s' resists by a = %.3g 1/s and b = %.3g 1/m, allowed are up to %g each: what "
-           "lets next to nothing through is a body", name, linear, z->quadratic, STRONGEST);
+    REFUSE("", tr("porous zone '%s' resists by a = %.3g 1/s and b = %.3g 1/m, allowed are up to %g each: "
+           "what lets next to nothing through is a body"), name, linear, z->quadratic, STRONGEST);
 }
 
 /* What is in it, of a zone that has its place. */
@@ -92,8 +93,8 @@ static tobi_status fill_zone(const tobi_world *w, const tobi_porous_def *def, to
     if (def->stem_number > 0) z->kind = TOBI_POROUS_ACROSS;
     if (def->screen_loss > 0) z->kind = TOBI_POROUS_ALONG;
     if (z->kind == TOBI_POROUS_ALL && vec3_length(def->direction) > 0)
-        REFUSE("direction", "porous zone '%s': a direction is of stems and of a screen; stones and "
-               "resistance act alike in all", def->name);
+        REFUSE("direction", tr("porous zone '%s': a direction is of stems and of a screen; stones and "
+               "resistance act alike in all"), def->name);
     if (z->kind != TOBI_POROUS_ALL) TOBI_TRY(find_direction(w, def, z, err));
     resist(def, z, def->screen_loss > 0 ? tobi_porous_thickness(z, w->system[0].box.dimension) : 1);
     snprintf(z->name, sizeof z->name, "%s", def->name);
@@ -149,25 +150,25 @@ static int can_be_wet(const tobi_world *w, const tobi_porous *z)
 tobi_status tobi_world_note_porous(tobi_world *w, tobi_error *err)
 {
     const double d = w->system[0].smoothing.spacing;
-    char text[320];
+    char text[TOBI_NOTE];
     for (int k = 0; k < w->sim.porous_count; k++) {
         const tobi_porous *z = &w->sim.porous[k];
         const double least = z->thickness;
         if (least < 2*d*(1 - 1e-9)) {
-            snprintf(text, sizeof text, "is %.4g m thin, %.2g spacings: particles pass it in a few steps, "
-                     "and its drag is that of a thicker or thinner one; a spacing of %.3g m would do\n",
+            snprintf(text, sizeof text, tr("is %.4g m thin, %.2g spacings: particles pass it in a few steps, "
+                     "and its drag is that of a thicker or thinner one; a spacing of %.3g m would do\n"),
                      least, least/d, 0.5*least);
             TOBI_TRY(tobi_world_add_notes(w, "porous zone", z->name, text, err));
         }
         if (z->porosity > 0 && z->porosity < OPEN_ENOUGH) {
-            snprintf(text, sizeof text, "has stones of a porosity of %.3g, and liquid fills it as if there "
-                     "were none: levels in it change too slowly by this factor, and liquid in it has too "
-                     "little inertia; it resists as it should\n", z->porosity);
+            snprintf(text, sizeof text, tr("has stones of a porosity of %.3g, and liquid fills it as if "
+                     "there were none: levels in it change too slowly by this factor, and liquid in it has "
+                     "too little inertia; it resists as it should\n"), z->porosity);
             TOBI_TRY(tobi_world_add_notes(w, "porous zone", z->name, text, err));
         }
         if (can_be_wet(w, z)) continue;
-        TOBI_TRY(tobi_world_add_notes(w, "porous zone", z->name, "has no liquid in it at the start: it acts "
-                                      "once liquid comes\n", err));
+        TOBI_TRY(tobi_world_add_notes(w, "porous zone", z->name, tr("has no liquid in it at the start: it "
+                                      "acts once liquid comes\n"), err));
     }
     return TOBI_OK;
 }

@@ -22,8 +22,8 @@ static tobi_status lay_box(const tobi_box *box, const tobi_porous_def *def, tobi
         z->lower[a] = def->box_min[a] - box->lower[a];
         z->upper[a] = def->box_max[a] - box->lower[a];
         if (!(z->upper[a] > z->lower[a]))
-            REFUSE(TOBI_INVALID, "box.max", "porous zone '%s' reaches from %g to %g m in %c: allowed are "
-                   "upper corners above the lower ones", def->name, def->box_min[a], def->box_max[a],
+            REFUSE(TOBI_INVALID, "box.max", tr("porous zone '%s' reaches from %g to %g m in %c: allowed are "
+                   "upper corners above the lower ones"), def->name, def->box_min[a], def->box_max[a],
                    "xyz"[a]);
         z->extent *= z->upper[a] - z->lower[a];
         z->thickness = fmin(z->thickness, z->upper[a] - z->lower[a]);
@@ -42,9 +42,9 @@ static double find_lesser_side(const tobi_polygon_size *s)
 static tobi_status lay_outline(const tobi_box *box, const tobi_porous_def *def, tobi_porous *z,
                                tobi_error *err)
 {
-    char whose[120];
+    char whose[TOBI_NOTE];
     tobi_outline given, clean = { 0 };
-    snprintf(whose, sizeof whose, "porous zone '%s'", def->name);
+    snprintf(whose, sizeof whose, tr("porous zone '%s'"), def->name);
     tobi_status status = tobi_outline_load(whose, &def->outline, box->dimension, &z->axis, &given, err);
     if (status == TOBI_OK) status = tobi_outline_clean(whose, &given, &clean, err);
     tobi_outline_free(&clean);
@@ -142,19 +142,21 @@ static tobi_status check_overlap(const tobi_porous *z, const tobi_porous *other,
     double room[2][4][2];
     if (!boxes_overlap(z, other, dimension)) return TOBI_OK;
     if (!z->corners && !other->corners)
-        REFUSE(TOBI_INVALID, "box", "porous zone '%s' overlaps '%s': allowed are boxes that touch at most",
+        REFUSE(TOBI_INVALID, "box",
+               tr("porous zone '%s' overlaps '%s': allowed are boxes that touch at most"),
                name, other->name);
     const char *key = z->radius > 0 ? "cylinder" : z->corners ? "outline" : "box";
     if (z->corners && other->corners && z->axis != other->axis)
-        REFUSE(TOBI_UNSUPPORTED, key, "the porous zones '%s' and '%s' go along different "
-               "axes, and the boxes around them overlap: allowed are such that touch at most", name,
+        REFUSE(TOBI_UNSUPPORTED, key, tr("the porous zones '%s' and '%s' go along different "
+               "axes, and the boxes around them overlap: allowed are such that touch at most"), name,
                other->name);
     const tobi_polygon a = cut(z, drawn->plane, room[0]), b = cut(other, drawn->plane, room[1]);
     const double least = fmin(tobi_polygon_measure(a).area, tobi_polygon_measure(b).area);
     const double common = tobi_polygon_common(a, b);
     if (common <= SLIVER*least) return TOBI_OK;
-    REFUSE(TOBI_INVALID, key, "the section of porous zone '%s' overlaps that of '%s' by %.3g m2: allowed are "
-           "zones that touch, and slivers up to %g of the smaller one", name, other->name, common, SLIVER);
+    REFUSE(TOBI_INVALID, key, tr("the section of porous zone '%s' overlaps that of '%s' by %.3g m2: allowed "
+           "are zones that touch, and slivers up to %g of the smaller one"), name, other->name, common,
+           SLIVER);
 }
 
 tobi_status tobi_porous_place(const tobi_world *w, const tobi_porous_def *def, tobi_porous *z,
@@ -173,8 +175,8 @@ tobi_status tobi_porous_place(const tobi_world *w, const tobi_porous_def *def, t
                                          : lay_box(box, def, z, err), "%s", key));
     for (int a = 0; a < box->dimension; a++)
         if (!(z->lower[a] < box->size[a] && z->upper[a] > 0))
-            REFUSE(TOBI_INVALID, key, "porous zone '%s' lies from %g to %g m in %c, "
-                   "outside of the domain", def->name, z->lower[a] + box->lower[a],
+            REFUSE(TOBI_INVALID, key, tr("porous zone '%s' lies from %g to %g m in %c, "
+                   "outside of the domain"), def->name, z->lower[a] + box->lower[a],
                    z->upper[a] + box->lower[a], "xyz"[a]);
     for (int k = 0; k < w->sim.porous_count; k++)
         TOBI_TRY(check_overlap(z, &w->sim.porous[k], def->name, box->dimension, err));

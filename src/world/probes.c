@@ -83,8 +83,8 @@ static tobi_status check_sizes(const tobi_world *w, const tobi_probe_def *def, t
     if (!(def->length > 0) || (!flat && !(def->width > 0)) ||
         (def->kind == TOBI_PROBE_VOLUME && !(def->height > 0)))
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "probe '%s' needs length%s%s, greater than 0 m",
-                                          def->name, flat ? "" : ", width",
-                                          def->kind == TOBI_PROBE_VOLUME ? ", height" : ""), "length");
+                                          def->name, flat ? "" : tr(", width"),
+                                          def->kind == TOBI_PROBE_VOLUME ? tr(", height") : ""), "length");
     if (flat && (normal[2] != 0 || def->along[2] != 0))
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "probe '%s': normal and along have no z in 2-D",
                                           def->name), "%s", normal[2] != 0 ? "normal" : "along");
@@ -177,15 +177,15 @@ tobi_status tobi_world_note_probes(tobi_world *w, tobi_error *err)
         const tobi_probe *p = &w->probes[k];
         double x[3];
         tobi_bvh_hit hit;
-        char text[240];
+        char text[TOBI_NOTE];
         if (p->def.kind != TOBI_PROBE_POINT) continue;
         for (int a = 0; a < 3; a++)
             x[a] = a < w->sim.def.dimension ? p->def.position[a] - w->system[0].box.lower[a] : 0;
         for (int b = 0; b < w->sim.body_count; b++) {
             const tobi_bvh *bvh = w->sim.bodies[b].bvh;
             if (!tobi_bvh_inside(bvh, x) || tobi_bvh_closest(bvh, x, deep, &hit)) continue;
-            snprintf(text, sizeof text, "lies deep in body '%s' at the start, where there is no liquid: let "
-                     "it lie on the surface\n", w->sim.bodies[b].name);
+            snprintf(text, sizeof text, tr("lies deep in body '%s' at the start, where there is no liquid: "
+                     "let it lie on the surface\n"), w->sim.bodies[b].name);
             TOBI_TRY(tobi_world_add_notes(w, "probe", p->name, text, err));
         }
     }

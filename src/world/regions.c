@@ -14,9 +14,10 @@
 static tobi_status note_support(tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
 {
     double support = w->system[0].smoothing.h/w->system[0].smoothing.spacing;
-    char text[100];
+    char text[TOBI_NOTE];
     if (!(def->surface_tension > 0) || support > 2.5 - 1e-6) return TOBI_OK;
-    snprintf(text, sizeof text, "surface tension needs a support of 2.5 or more (3 is better); it is %g\n",
+    snprintf(text, sizeof text,
+             tr("surface tension needs a support of 2.5 or more (3 is better); it is %g\n"),
              support);
     return tobi_world_add_notes(w, "fluid", def->name, text, err);
 }
@@ -42,8 +43,9 @@ static tobi_status load_shape(const char *name, const tobi_fill_def *f, int dime
 /* In messages. */
 static const char *shape_of(const tobi_fill_def *f)
 {
-    return f->mesh ? f->mesh : tobi_outline_given(&f->outline) ? "an outline" : f->radius > 0 ? "a sphere"
-                                                                                             : "a box";
+    return f->mesh ? f->mesh : tobi_outline_given(&f->outline) ? tr("an outline") : f->radius > 0
+    ? tr("a sphere")
+                                                                                             : tr("a box");
 }
 
 /* `name`: fluid or solid, in messages. */
@@ -105,8 +107,8 @@ static tobi_status add_regions(tobi_world *w, const tobi_system *s, const char *
     tobi_region *more = realloc(w->regions, (size_t)(w->region_count + count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for regions");
     w->regions = more;
-    char whose[160];
-    snprintf(whose, sizeof whose, "%s '%s'", kind, name ? name : "");
+    char whose[TOBI_NOTE];
+    snprintf(whose, sizeof whose, "%s '%s'", tr(kind), name ? name : "");
     const int notes = w->note_count;
     *volume = 0;
     for (int k = 0; k < count; k++) {
@@ -135,7 +137,7 @@ static tobi_status check_fills(const tobi_world *w, const tobi_fill_def *fills, 
     const int room = TOBI_REGION_LIMIT - w->region_count;
     if (count < 0 || count > room || (count > 0 && !fills))
         return tobi_fail(err, TOBI_INVALID, "fill_count is %d%s, allowed is 0 to %d", count,
-                         fills ? "" : " and fills is NULL", room);
+                         fills ? "" : tr(" and fills is NULL"), room);
     for (int k = 0; k < count; k++) TOBI_TRY(tobi_param_check(&tobi_fill_table, &fills[k], err));
     return TOBI_OK;
 }
@@ -191,7 +193,7 @@ tobi_status tobi_world_use_solids(tobi_world *w, const tobi_mlsmpm_def *def, tob
 
 /* Behind the last solid of a system, not counted yet. */
 static tobi_status make_solid(tobi_world *w, tobi_system *s, const tobi_solid_def *def, const char *name,
-                              double volume, int fill_count, char note[200], tobi_error *err)
+                              double volume, int fill_count, char note[TOBI_NOTE], tobi_error *err)
 {
     tobi_solid *solid = &s->solids[s->solid_count];
     *solid = (tobi_solid){ .def = *def };
@@ -212,7 +214,7 @@ static tobi_status add_solid(tobi_world *w, tobi_system *s, const tobi_solid_def
     const char *name = def->name ? def->name : "solid";
     const int notes = w->note_count;
     double volume;
-    char note[200] = "";
+    char note[TOBI_NOTE] = "";
     TOBI_TRY(tobi_names_check_matter(w, "solid", name, err));
     if (s->solid_count == TOBI_SOLID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d solids", TOBI_SOLID_LIMIT);
@@ -270,28 +272,30 @@ static tobi_status check_placed(const char *kind, const char *name, int64_t plac
     if (placed > 0) return TOBI_OK;
     if (taken > 0)
         return tobi_fail(err, TOBI_INVALID, "no particles are left in %s '%s': later entries of fluids start "
-                         "in all of its regions and take its place; write it after them", kind, name);
+                         "in all of its regions and take its place; write it after them", tr(kind), name);
     if (all == 0)
         return tobi_fail(err, TOBI_INVALID,
                          "no particles at all in %s '%s': its regions are smaller than the distance of "
-                         "particles, spacing; allowed are regions of a spacing or more", kind, name);
+                         "particles, spacing; allowed are regions of a spacing or more", tr(kind), name);
     return tobi_fail(err, TOBI_INVALID,
                      "no particles at all in %s '%s': of the %lld that it would start with, %lld lie inside "
                      "bodies, %lld behind planes, %lld inside solids and %lld outside the domain; allowed is "
-                     "a %s of which a part lies free", kind, name, all, (long long)lost[COVERED],
-                     (long long)lost[BEHIND], (long long)lost[SOAKED], (long long)lost[OUTSIDE], kind);
+                     "a %s of which a part lies free", tr(kind), name, all, (long long)lost[COVERED],
+                     (long long)lost[BEHIND], (long long)lost[SOAKED], (long long)lost[OUTSIDE], tr(kind));
 }
 
 /* A line per cause: what was cut off at the domain, by bodies and by planes. */
 static tobi_status note_losses(tobi_world *w, const char *kind, const char *name,
                                const int64_t lost[LOSSES], tobi_error *err)
 {
-    static const char *const what[LOSSES] = { "inside bodies were cut out", "behind planes were cut out",
-                                              "inside solids were cut out",
-                                              "outside the domain were left out" };
+    static const char *const what[LOSSES] = { TR("inside bodies were cut out"),
+                                             TR("behind planes were cut out"),
+                                              TR("inside solids were cut out"),
+                                              TR("outside the domain were left out") };
     for (int c = 0; c < LOSSES; c++) {
-        char text[200];
-        snprintf(text, sizeof text, "%lld particles that would start %s\n", (long long)lost[c], what[c]);
+        char text[TOBI_NOTE];
+        snprintf(text, sizeof text, tr("%lld particles that would start %s\n"), (long long)lost[c],
+                 tr(what[c]));
         if (lost[c] > 0) TOBI_TRY(tobi_world_add_notes(w, kind, name, text, err));
     }
     return TOBI_OK;

@@ -130,7 +130,7 @@ void tobi_rules_solid(const tobi_rules *r, const tobi_world_def *d, const void *
 {
     const tobi_mlsmpm_def *m = method_def;
     const char *key;
-    char note[200];
+    char note[TOBI_NOTE];
     tobi_error why = { 0 };
     if (!r || !d || !solid || !m || tobi_method_find(d->method) != &tobi_mlsmpm ||
         !tobi_solid_uses(solid->model, "strength")) return;

@@ -23,28 +23,28 @@ static const double CROWDED = 0.8;
 
 /* What may help besides a smaller step. Liquid in a body that comes back lands in a layer beside it at once,
    crowded as it never is else: pressure throws it. */
-static void name_remedy(const tobi_system *s, double limit, char text[240])
+static void name_remedy(const tobi_system *s, double limit, char text[TOBI_NOTE])
 {
     const tobi_body *b = s->sim->bodies;
     for (int k = 0; k < s->sim->body_count; k++, b++) {
         const double since = s->sim->time - b->absent[1];
         if (!(b->absent[1] > 0 && since >= 0 && since*limit < RETURN_REACH*s->smoothing.spacing)) continue;
-        snprintf(text, 240, ". Body '%s' has just come back, and the liquid in it was pushed out at once: "
-                 "let a thick body come into liquid by a motion", b->name);
+        snprintf(text, TOBI_NOTE, tr(". Body '%s' has just come back, and the liquid in it was pushed out at "
+                 "once: let a thick body come into liquid by a motion"), b->name);
         return;
     }
     if (tobi_openings_share(s) > CROWDED)
-        snprintf(text, 240, ". The inlets have all but filled the domain: stop them before, add an outlet, "
-                 "or make the domain larger");
+        snprintf(text, TOBI_NOTE, tr(". The inlets have all but filled the domain: stop them before, add an "
+                 "outlet, or make the domain larger"));
     else if (s->sim->def.speed_limit <= 0)
-        snprintf(text, 240, ", or a speed_limit, where liquid is meant to be that fast");
+        snprintf(text, TOBI_NOTE, tr(", or a speed_limit, where liquid is meant to be that fast"));
 }
 
 tobi_status tobi_runaway_check(const tobi_system *s, tobi_error *err)
 {
     double limit = s->sim->def.speed_limit, cfl;
     const char *key = name_cfl(s, &cfl);
-    char remedy[240] = "";
+    char remedy[TOBI_NOTE] = "";
     if (limit <= 0) {
         /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
         const int64_t few = 20 + s->particles.count/200;

@@ -37,7 +37,7 @@ tobi_status tobi_world_add_scalar(tobi_world *w, const tobi_scalar_def *def, tob
     TOBI_TRY(tobi_param_check(&tobi_scalar_table, def, err));
     TOBI_TRY(check_world(w, err));
     tobi_scalar *c = &w->sim.scalar[def->field];
-    if (c->given) REFUSE("field", "%s is given already; allowed is once", field_name[def->field]);
+    if (c->given) REFUSE("field", tr("%s is given already; allowed is once"), field_name[def->field]);
     if (def->thinning != 0 && !w->sim.def.implicit_viscosity)
         return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "%s changes viscosities by %.10g, and "
                            "implicit_viscosity is false; allowed without it is 0", field_name[def->field],
@@ -54,22 +54,24 @@ static tobi_status find_kind(const tobi_world *w, const tobi_scalar_value_def *d
     int box = 0;
     for (int a = 0; a < 3; a++) box |= d->box_min[a] != 0 || d->box_max[a] != 0;
     if (box + (d->fluid != NULL) + (d->inlet != NULL) + (d->side != TOBI_SIDE_NONE) + (d->body != NULL) != 1)
-        REFUSE("", "a value of %s is given at %s of box, fluid, inlet, side and body; allowed is one",
-               field_name[d->field], box || d->fluid || d->inlet || d->side || d->body ? "more than one"
-               : "none");
+        REFUSE("", tr("a value of %s is given at %s of box, fluid, inlet, side and body; allowed is one"),
+               field_name[d->field], box || d->fluid || d->inlet || d->side || d->body ? tr("more than one")
+               : tr("none"));
     p->kind = box ? TOBI_SCALAR_AT_BOX : d->fluid ? TOBI_SCALAR_AT_FLUID : d->inlet ? TOBI_SCALAR_AT_INLET
               : d->body ? TOBI_SCALAR_AT_BODY : TOBI_SCALAR_AT_SIDE;
     const int wall = p->kind == TOBI_SCALAR_AT_SIDE || p->kind == TOBI_SCALAR_AT_BODY,
               given = d->value > TOBI_NO_VALUE;
     if (!given && !wall)
-        REFUSE("value", "%s has no value there; allowed are numbers, and a flux of sides and bodies alone",
+        REFUSE("value",
+               tr("%s has no value there; allowed are numbers, and a flux of sides and bodies alone"),
                field_name[d->field]);
     if (d->flux != 0 && (given || !wall))
-        REFUSE("flux", "a flux of %s goes with a side or body that has no value", field_name[d->field]);
+        REFUSE("flux", tr("a flux of %s goes with a side or body that has no value"), field_name[d->field]);
     if (d->transfer > 0 && !(given && wall))
-        REFUSE("transfer", "a transfer of %s goes with the value of a side or body", field_name[d->field]);
+        REFUSE("transfer", tr("a transfer of %s goes with the value of a side or body"),
+               field_name[d->field]);
     if (!w->sim.scalar[d->field].given)
-        REFUSE("field", "the world has no %s; scalars are to have it", field_name[d->field]);
+        REFUSE("field", tr("the world has no %s; scalars are to have it"), field_name[d->field]);
     return TOBI_OK;
 }
 
@@ -81,8 +83,8 @@ static tobi_status place_box(const tobi_world *w, const tobi_scalar_value_def *d
         p->lower[a] = d->box_min[a] - box->lower[a];
         p->upper[a] = d->box_max[a] - box->lower[a];
         if (!(p->upper[a] > p->lower[a]))
-            REFUSE("box.max", "the box of %s reaches from %g to %g m in %c: allowed are upper corners above "
-                   "the lower ones", field_name[d->field], d->box_min[a], d->box_max[a], "xyz"[a]);
+            REFUSE("box.max", tr("the box of %s reaches from %g to %g m in %c: allowed are upper corners "
+                   "above the lower ones"), field_name[d->field], d->box_min[a], d->box_max[a], "xyz"[a]);
     }
     return TOBI_OK;
 }
@@ -92,11 +94,11 @@ static tobi_status find_side(const tobi_world *w, const tobi_scalar_value_def *d
 {
     const int axis = (d->side - TOBI_X_MIN)/2, upper = (d->side - TOBI_X_MIN)%2;
     p->number = 2*axis + upper;
-    if (axis >= w->system[0].box.dimension) REFUSE("side", "%s: a 2-D domain has no such side",
+    if (axis >= w->system[0].box.dimension) REFUSE("side", tr("%s: a 2-D domain has no such side"),
                                                    side_name[p->number]);
     const int kind = upper ? w->sim.def.wall_max[axis] : w->sim.def.wall_min[axis];
     if (kind == TOBI_WALL_OPEN || w->system[0].box.periodic[axis])
-        REFUSE("side", "%s is %s: allowed are walls", side_name[p->number],
+        REFUSE("side", tr("%s is %s: allowed are walls"), side_name[p->number],
                kind == TOBI_WALL_OPEN ? "open" : "periodic");
     return TOBI_OK;
 }
@@ -128,7 +130,7 @@ static tobi_status find_place(const tobi_world *w, const tobi_scalar_value_def *
     }
     p->number = d->fluid ? find_fluid(w, *name) : d->inlet ? find_inlet(w, *name)
                 : tobi_world_find_body(w, *name);
-    if (p->number < 0) REFUSE(key, "there is no %s '%s'", key, *name);
+    if (p->number < 0) REFUSE(key, tr("there is no %s '%s'"), key, *name);
     return TOBI_OK;
 }
 
@@ -140,9 +142,9 @@ static tobi_status check_others(const tobi_world *w, const tobi_scalar_place *p,
         if (q->field != p->field || q->kind < TOBI_SCALAR_AT_INLET || p->kind < TOBI_SCALAR_AT_INLET)
             continue;
         if (q->kind == p->kind && q->number == p->number)
-            REFUSE("", "%s of '%s' is given already, by value %d", field_name[p->field], p->name, k);
+            REFUSE("", tr("%s of '%s' is given already, by value %d"), field_name[p->field], p->name, k);
         if (strcmp(q->name, p->name) == 0)
-            REFUSE("name", "value %d of %s has the name '%s' already", k, field_name[p->field], p->name);
+            REFUSE("name", tr("value %d of %s has the name '%s' already"), k, field_name[p->field], p->name);
     }
     return TOBI_OK;
 }
@@ -302,15 +304,15 @@ static const char *find_idle(const tobi_world *w, const tobi_scalar_place *p)
     double spread = w->sim.scalar[p->field].diffusivity;
     for (int f = 0; f < s->fluid_count; f++) spread += s->fluid[f].smagorinsky;
     if (p->kind == TOBI_SCALAR_AT_BOX && !holds_liquid(s, p))
-        return "has no liquid in it at the start: its value does nothing\n";
+        return tr("has no liquid in it at the start: its value does nothing\n");
     if (p->wall.fixed != 0 && p->kind >= TOBI_SCALAR_AT_SIDE && spread == 0)
-        return "has a value, but nothing passes: the diffusivity is 0\n";
+        return tr("has a value, but nothing passes: the diffusivity is 0\n");
     return NULL;
 }
 
 tobi_status tobi_world_note_scalars(tobi_world *w, tobi_error *err)
 {
-    char text[320];
+    char text[TOBI_NOTE];
     for (int k = 0; k < w->sim.scalar_place_count; k++) {
         const tobi_scalar_place *p = &w->sim.scalar_place[k];
         const tobi_scalar *c = &w->sim.scalar[p->field];
@@ -318,8 +320,8 @@ tobi_status tobi_world_note_scalars(tobi_world *w, tobi_error *err)
         const char *idle = find_idle(w, p);
         if (idle) TOBI_TRY(tobi_world_add_notes(w, field_name[p->field], p->name, idle, err));
         if (change <= MOST_CHANGE) continue;
-        snprintf(text, sizeof text, "changes the weight of the liquid by %.3g of it; its inertia stays, "
-                 "which holds for small changes alone\n", change);
+        snprintf(text, sizeof text, tr("changes the weight of the liquid by %.3g of it; its inertia stays, "
+                 "which holds for small changes alone\n"), change);
         TOBI_TRY(tobi_world_add_notes(w, field_name[p->field], p->name, text, err));
     }
     return TOBI_OK;

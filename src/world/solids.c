@@ -101,19 +101,19 @@ tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err)
 {
     const double wish = w->sim.def.time_step, stable = tobi_world_stable_step(w), rest = find_step(w, 0),
                  parts = ceil(wish/stable*(1 - 1e-9));
-    char text[240], speed[80] = "";
+    char text[TOBI_NOTE], speed[TOBI_NOTE] = "";
     if (w->step_noted || !(stable > 0) || wish <= stable) return TOBI_OK;
     w->step_noted = 1;
     if (w->system[0].solid_count == 0) {
-        snprintf(text, sizeof text, "%.4g s is longer than the %.3g s that sound in the liquid allows: the "
-                 "run may run away\n", wish, stable);
+        snprintf(text, sizeof text, tr("%.4g s is longer than the %.3g s that sound in the liquid allows: "
+                 "the run may run away\n"), wish, stable);
         return tobi_world_add_notes(w, "world", "time_step", text, err);
     }
     if (stable < 0.99*rest)
-        snprintf(speed, sizeof speed, ", their %.3g m/s at the start",
+        snprintf(speed, sizeof speed, tr(", their %.3g m/s at the start"),
                  fmax(tobi_world_start_speed(w, &w->system[0]), w->sim.wall_speed));
-    snprintf(text, sizeof text, "%.4g s is longer than the %.3g s that the stiffness of the solids%s and "
-             "gravity allow: each is cut into %.9g or more\n", wish, stable, speed, parts);
+    snprintf(text, sizeof text, tr("%.4g s is longer than the %.3g s that the stiffness of the solids%s and "
+             "gravity allow: each is cut into %.9g or more\n"), wish, stable, speed, parts);
     return tobi_world_add_notes(w, "world", "time_step", text, err);
 }
 
@@ -124,7 +124,7 @@ static const double CLAMP = 1e3;
 tobi_status tobi_world_note_clamps(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = tobi_world_solids(w);
-    char text[200];
+    char text[TOBI_NOTE];
     double most = 0;
     for (int k = 0; s && k < s->solid_count; k++) {
         const tobi_solid_def *d = &s->solids[k].def;
@@ -134,8 +134,8 @@ tobi_status tobi_world_note_clamps(tobi_world *w, tobi_error *err)
     for (int k = 0; s && k < s->solid_count; k++) {
         const tobi_solid_def *d = &s->solids[k].def;
         if (d->model != TOBI_STATIONARY || !d->bonded || d->density >= CLAMP*most*(1 - 1e-9)) continue;
-        snprintf(text, sizeof text, "holds what is bonded to it by its mass: lighter than %.3g kg/m3 it "
-                 "gives way as if it were a hinge\n", CLAMP*most);
+        snprintf(text, sizeof text, tr("holds what is bonded to it by its mass: lighter than %.3g kg/m3 it "
+                 "gives way as if it were a hinge\n"), CLAMP*most);
         TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[k].name, text, err));
     }
     return TOBI_OK;
@@ -144,8 +144,8 @@ tobi_status tobi_world_note_clamps(tobi_world *w, tobi_error *err)
 /* By default liquids slip along bodies: a stirrer in a paste would then feel next to no torque. */
 static tobi_status note_slip(tobi_world *w, tobi_error *err)
 {
-    static const char text[] = "the liquid slips along it, with implicit_viscosity; for a liquid that sticks "
-                               "to it: \"friction\": \"no-slip\"\n";
+    const char *text = tr("the liquid slips along it, with implicit_viscosity; for a liquid that sticks "
+                               "to it: \"friction\": \"no-slip\"\n");
     for (int k = 0; w->sim.def.implicit_viscosity && k < w->sim.body_count; k++)
         if (w->sim.bodies[k].friction == TOBI_SLIP)
             TOBI_TRY(tobi_world_add_notes(w, "body", w->sim.bodies[k].name, text, err));
@@ -155,9 +155,9 @@ static tobi_status note_slip(tobi_world *w, tobi_error *err)
 tobi_status tobi_world_note_liquids(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = tobi_world_solids(w);
-    static const char text[] = "a liquid of mlsmpm does not keep its volume well and carries what is "
+    const char *text = tr("a liquid of mlsmpm does not keep its volume well and carries what is "
                                "heavier; unless it soaks sand or snow, write it into fluids, with dfsph or "
-                               "isph, beside the solids\n";
+                               "isph, beside the solids\n");
     for (int k = 0; s && k < s->solid_count; k++)
         if (s->solids[k].def.model == TOBI_LIQUID)
             TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[k].name, text, err));
@@ -178,9 +178,9 @@ tobi_status tobi_world_note_friction(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = tobi_world_solids(w);
     const tobi_solid_def usual = tobi_default_solid_def();
-    static const char text[] = "its surface_friction does nothing, as there is no solid that it is not "
+    const char *text = tr("its surface_friction does nothing, as there is no solid that it is not "
                                "bonded to; of bodies their friction_coefficient counts, of sides "
-                               "domain.friction\n";
+                               "domain.friction\n");
     for (int k = 0; s && k < s->solid_count; k++)
         if (s->solids[k].def.model != TOBI_LIQUID && !meets_solids(s, k) &&
             s->solids[k].def.surface_friction != usual.surface_friction)
@@ -208,12 +208,13 @@ tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err)
         for (int side = 0; side < 2*s->box.dimension; side++) {
             const int axis = side/2, upper = side%2;
             const double reach = find_reach(&s->box, &s->sim->bodies[k], axis, upper);
-            char text[300];
+            char text[TOBI_NOTE];
             if ((upper ? s->sim->def.wall_max : s->sim->def.wall_min)[axis] == TOBI_WALL_OPEN) continue;
             if (reach <= 0 || reach >= 1.5*cell) continue;
-            snprintf(text, sizeof text, "lies within %.2g cells of the side at the %s %c, which carries a "
-                     "part or all of what solids press on it there; from 1.5 cells on the body carries all\n",
-                     reach/cell, upper ? "upper" : "lower", "xyz"[axis]);
+            snprintf(text, sizeof text, tr("lies within %.2g cells of the side at the %s %c, which carries "
+                     "a part or all of what solids press on it there; from 1.5 cells on the body carries "
+                     "all\n"),
+                     reach/cell, upper ? tr("upper") : tr("lower"), "xyz"[axis]);
             TOBI_TRY(tobi_world_add_notes(w, "body", s->sim->bodies[k].name, text, err));
         }
     return TOBI_OK;
@@ -274,14 +275,15 @@ tobi_status tobi_world_note_edges(tobi_world *w, tobi_error *err)
         if (!b->blade || !b->motion || b->rigid.kind != TOBI_PRESCRIBED) continue;
         TOBI_TRY(find_edge_reach(w, b, most, start, err));
         for (int side = 0; side < 2*s->box.dimension; side++) {
-            char text[300];
+            char text[TOBI_NOTE];
             if (!ends_at(&w->sim.def, side, most[side]/spacing)) continue;
             if (most[side] - start[side] < spacing || !has_material_at(s, side)) continue;
             if (fabs(most[side]) < 1e-6*spacing) most[side] = 0;
-            snprintf(text, sizeof text, "its edge comes to %.3g m %s the side at the %s %c, no farther: a "
+            snprintf(text, sizeof text, tr("its edge comes to %.3g m %s the side at the %s %c, no farther: a "
                      "layer there may hold the pieces together; to part them, let it go half a spacing "
-                     "(%.3g m) past the side\n", fabs(most[side]), most[side] < 0 ? "before" : "past",
-                     side%2 ? "upper" : "lower", "xyz"[side/2], 0.5*spacing);
+                     "(%.3g m) past the side\n"), fabs(most[side]), most[side] < 0 ? tr("before")
+                     : tr("past"),
+                     side%2 ? tr("upper") : tr("lower"), "xyz"[side/2], 0.5*spacing);
             TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
         }
     }

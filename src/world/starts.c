@@ -40,7 +40,7 @@ static double find_normal_speed(const tobi_body *b)
 static tobi_status note_jerk(tobi_world *w, tobi_body *b, tobi_error *err)
 {
     double after = 0, twice = 0, pressing;
-    char text[240];
+    char text[TOBI_NOTE];
     TOBI_TRY(tobi_body_predict(b, 0, 2*SOON, &twice, err));
     pressing = -find_normal_speed(b);
     TOBI_TRY(tobi_body_predict(b, 0, SOON, &after, err));
@@ -50,8 +50,8 @@ static tobi_status note_jerk(tobi_world *w, tobi_body *b, tobi_error *err)
     /* Of wave makers stroke.c tells more. */
     if (b->motion == tobi_motion_positions && tobi_motion_waves(b->motion_user)) return TOBI_OK;
     if (!(pressing > fmax(JERK*sqrt(2*w->system[0].start_head), JERK*after))) return TOBI_OK;
-    snprintf(text, sizeof text, "sets off at %.3g m/s: the force of the first step is an impulse over "
-             "the time step; let the motion begin at rest\n", speed);
+    snprintf(text, sizeof text, tr("sets off at %.3g m/s: the force of the first step is an impulse over "
+             "the time step; let the motion begin at rest\n"), speed);
     return tobi_world_add_notes(w, "body", b->name, text, err);
 }
 
@@ -64,12 +64,12 @@ static tobi_status note_gap(tobi_world *w, const tobi_region *r, tobi_error *err
     for (int side = 0; side < 2*box->dimension; side++) {
         const int a = side/2, upper = side%2;
         const double gap = upper ? box->lower[a] + box->size[a] - r->upper[a] : r->lower[a] - box->lower[a];
-        char text[240];
+        char text[TOBI_NOTE];
         if (box->periodic[a] || !(gap > GAP_LEAST*d && gap < GAP_MOST*d)) continue;
         if (w->sim.def.gravity[a]*(upper ? -1 : 1) > 0) continue;    /* the free surface, or a ceiling */
-        snprintf(text, sizeof text, "fill[%d] begins %.3g m from the side at the %s %c: it falls there "
-                 "first; let it begin at the side\n",
-                 r->number, gap, upper ? "upper" : "lower", "xyz"[a]);
+        snprintf(text, sizeof text, tr("fill[%d] begins %.3g m from the side at the %s %c: it falls there "
+                 "first; let it begin at the side\n"),
+                 r->number, gap, upper ? tr("upper") : tr("lower"), "xyz"[a]);
         return tobi_world_add_notes(w, "fluid", w->system[0].fluid[r->owner].name, text, err);
     }
     return TOBI_OK;
@@ -79,12 +79,12 @@ static tobi_status note_gap(tobi_world *w, const tobi_region *r, tobi_error *err
 static tobi_status note_compression(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = &w->system[0];
-    char text[240];
+    char text[TOBI_NOTE];
     if (!s->method->sound || s->method->solids) return TOBI_OK;
     const double sound = s->method->sound(s), fall = sqrt(2*s->start_head);
     if (!(sound < SOUND_LEAST*fall)) return TOBI_OK;
-    snprintf(text, sizeof text, "its weight compresses it: sound goes through it at %.3g m/s, a fall from "
-             "its height ends at %.3g m/s; %.0f times the %s.stiffness makes sound ten times as fast\n",
+    snprintf(text, sizeof text, tr("its weight compresses it: sound goes through it at %.3g m/s, a fall from "
+             "its height ends at %.3g m/s; %.0f times the %s.stiffness makes sound ten times as fast\n"),
              sound, fall, pow(10*fall/sound, 2), s->method->name);
     return tobi_world_add_notes(w, "fluid", s->fluid[0].name, text, err);
 }
@@ -93,8 +93,8 @@ static tobi_status note_compression(tobi_world *w, tobi_error *err)
    below it; with loss they do so by and by. */
 static tobi_status note_rough_surface(tobi_world *w, tobi_error *err)
 {
-    static const char text[] = "is p = 0 at the particles of the surface: with this surface_rule a tank at "
-                               "rest does not stay so; loss, or 0.2 and more, keep it\n";
+    const char *text = tr("is p = 0 at the particles of the surface: with this surface_rule a tank at "
+                               "rest does not stay so; loss, or 0.2 and more, keep it\n");
     const tobi_system *s = &w->system[0];
     const tobi_isph_def *def = s->def;
     if (strcmp(s->method->name, "isph") != 0 || def->surface_rule == TOBI_SURFACE_LOSS ||
@@ -105,7 +105,7 @@ static tobi_status note_rough_surface(tobi_world *w, tobi_error *err)
 /* Angles of contact where no free surface has tension; 90 degrees, the default, asks for nothing. */
 static tobi_status note_contact_angles(tobi_world *w, tobi_error *err)
 {
-    static const char text[] = "does nothing: no fluid has a surface_tension\n";
+    const char *text = tr("does nothing: no fluid has a surface_tension\n");
     const tobi_system *s = &w->system[0];
     for (int f = 0; f < s->fluid_count; f++)
         if (s->fluid[f].tension > 0) return TOBI_OK;
@@ -131,19 +131,20 @@ static double find_thickness(const tobi_body *b, int dimension)
 static tobi_status note_returns(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = &w->system[0];
-    char text[240];
+    char text[TOBI_NOTE];
     for (int k = 0; k < w->sim.body_count; k++) {
         const tobi_body *b = &w->sim.bodies[k];
         const int thick = find_thickness(b, s->box.dimension) > 2.001*s->smoothing.spacing;
         if (!(b->absent[1] > 0)) continue;
         if (tobi_world_solid_count(w) > 0) {
-            snprintf(text, sizeof text, "comes back at %.4g s: a solid that lies in it then is not pushed "
-                     "out; let it come by a motion, if one may\n", b->absent[1]);
+            snprintf(text, sizeof text, tr("comes back at %.4g s: a solid that lies in it then is not pushed "
+                     "out; let it come by a motion, if one may\n"), b->absent[1]);
             TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
         }
         if (s->method->solids || !thick) continue;
-        snprintf(text, sizeof text, "comes back at %.4g s: liquid that lies in it then is thrown about, as "
-                 "it is thicker than two spacings; let it come by a motion, if liquid may\n", b->absent[1]);
+        snprintf(text, sizeof text, tr("comes back at %.4g s: liquid that lies in it then is thrown about, "
+                 "as it is thicker than two spacings; let it come by a motion, if liquid may\n"),
+                 b->absent[1]);
         TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
     }
     return TOBI_OK;

@@ -65,10 +65,10 @@ tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tob
 static tobi_status note_method(tobi_world *w, const tobi_body *b, tobi_error *err)
 {
     const tobi_method *m = w->system[0].method;
-    char text[240];
+    char text[TOBI_NOTE];
     if (!m->damps_waves) return TOBI_OK;
-    snprintf(text, sizeof text, "by %s its waves come out too low: on 10 layers of particles by up to a "
-             "quarter, and they get lower on their way; isph keeps them\n", m->name);
+    snprintf(text, sizeof text, tr("by %s its waves come out too low: on 10 layers of particles by up to a "
+             "quarter, and they get lower on their way; isph keeps them\n"), m->name);
     return tobi_world_add_notes(w, "body", b->name, text, err);
 }
 
@@ -90,11 +90,11 @@ static tobi_status note_depth(tobi_world *w, const tobi_body *b, tobi_error *err
 {
     const double *g = w->sim.def.gravity, depth = wave_depth(b);
     const double height = w->system[0].start_head/sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
-    char text[240];
+    char text[TOBI_NOTE];
     if (w->sim.opening_count > 0 || !(height > 0) || fabs(depth - height) <= OTHER_DEPTH*height)
         return TOBI_OK;
-    snprintf(text, sizeof text, "its waves are those of a depth of %.4g m, and the liquid starts %.4g m "
-             "high: where the bottom is flat, its depth should be that\n", depth, height);
+    snprintf(text, sizeof text, tr("its waves are those of a depth of %.4g m, and the liquid starts %.4g m "
+             "high: where the bottom is flat, its depth should be that\n"), depth, height);
     return tobi_world_add_notes(w, "body", b->name, text, err);
 }
 
@@ -102,10 +102,10 @@ static tobi_status note_depth(tobi_world *w, const tobi_body *b, tobi_error *err
 static tobi_status note_start(tobi_world *w, const tobi_body *b, tobi_error *err)
 {
     const double period = tobi_waves_sudden(tobi_motion_waves(b->motion_user));
-    char text[240];
+    char text[TOBI_NOTE];
     if (!(period > 0)) return TOBI_OK;
-    snprintf(text, sizeof text, "its waves begin at full height: the sudden start sends a shock ahead of "
-             "them; a ramp of one or two periods, %.3g to %.3g s, makes them rise\n", period, 2*period);
+    snprintf(text, sizeof text, tr("its waves begin at full height: the sudden start sends a shock ahead of "
+             "them; a ramp of one or two periods, %.3g to %.3g s, makes them rise\n"), period, 2*period);
     return tobi_world_add_notes(w, "body", b->name, text, err);
 }
 

@@ -75,7 +75,8 @@ tobi_status tobi_world_read_image(tobi_world *w, const char *kind, const char *n
                                           "pictures show as an outline: it has no texture", name), "texture");
     if (!coordinates)
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "%s '%s' has a texture, but no mesh with "
-                                          "texture coordinates (vt of an OBJ file)", kind, name), "texture");
+                                          "texture coordinates (vt of an OBJ file)", tr(kind), name),
+                                          "texture");
     if (number >= *room) {
         struct tobi_image **more = realloc(*list, (size_t)(number + 1)*sizeof *more);
         if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the texture of '%s'", name);

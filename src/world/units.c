@@ -23,25 +23,25 @@ static tobi_status note_gas(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = &w->system[0];
     double least, most;
-    char text[240];
+    char text[TOBI_NOTE];
     tobi_system_densities(s, &least, &most);
     if (!(most < GAS) || least < most) return TOBI_OK;      /* of two liquids the ratio counts */
-    snprintf(text, sizeof text, "its density is %.3g kg/m3, that of a gas; water has 1000 kg/m3\n", most);
+    snprintf(text, sizeof text, tr("its density is %.3g kg/m3, that of a gas; water has 1000 kg/m3\n"), most);
     return tobi_world_add_notes(w, "fluid", s->fluid[0].name, text, err);
 }
 
 static tobi_status note_bodies(tobi_world *w, tobi_error *err)
 {
     double least, most;
-    char text[240];
+    char text[TOBI_NOTE];
     tobi_system_densities(&w->system[0], &least, &most);
     for (int k = 0; k < w->sim.body_count; k++) {
         const tobi_body *b = &w->sim.bodies[k];
         const double density = b->rigid.mass/b->rest.volume, part = density/most;
         if (b->rigid.kind == TOBI_PRESCRIBED || !(part < LIGHTEST || part > HEAVIEST)) continue;
-        snprintf(text, sizeof text, "its density is %.3g kg/m3, %.3g times that of the liquid: are both in "
-                 "kg/m3? %s\n", density, part, part < 1 ? "Lighter than 0.01 times it bodies do not float as "
-                 "they should" : "Water has 1000 kg/m3");
+        snprintf(text, sizeof text, tr("its density is %.3g kg/m3, %.3g times that of the liquid: are both "
+                 "in kg/m3? %s\n"), density, part, part < 1 ? tr("Lighter than 0.01 times it bodies do not "
+                 "float as they should") : tr("Water has 1000 kg/m3"));
         TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
     }
     return TOBI_OK;
@@ -49,9 +49,9 @@ static tobi_status note_bodies(tobi_world *w, tobi_error *err)
 
 static tobi_status note_gravity(tobi_world *w, double g, tobi_error *err)
 {
-    char text[240];
+    char text[TOBI_NOTE];
     if (!(g > STRONG)) return TOBI_OK;
-    snprintf(text, sizeof text, "is %.4g m/s2, %.4g times that of the earth: are lengths in metres?\n", g,
+    snprintf(text, sizeof text, tr("is %.4g m/s2, %.4g times that of the earth: are lengths in metres?\n"), g,
              g/9.81);
     return tobi_world_add_notes(w, "world", "gravity", text, err);
 }
@@ -60,11 +60,11 @@ static tobi_status note_gravity(tobi_world *w, double g, tobi_error *err)
 static tobi_status note_size(tobi_world *w, double g, tobi_error *err)
 {
     const double end = w->sim.def.end_time, height = w->system[0].start_head/g, fall = 0.5*g*end*end;
-    char text[240];
+    char text[TOBI_NOTE];
     if (w->sim.opening_count > 0) return TOBI_OK;      /* their speed counts as a height, too */
     if (!(height > HIGH && end > 0 && fall < FALLS*height)) return TOBI_OK;
-    snprintf(text, sizeof text, "is %.3g s, in which things fall by %.3g m, and the liquid is %.4g m high: "
-             "are lengths in metres?\n", end, fall, height);
+    snprintf(text, sizeof text, tr("is %.3g s, in which things fall by %.3g m, and the liquid is %.4g m "
+             "high: are lengths in metres?\n"), end, fall, height);
     return tobi_world_add_notes(w, "world", "end_time", text, err);
 }
 
@@ -73,15 +73,15 @@ static tobi_status note_viscosity(tobi_world *w, double g, tobi_error *err)
     const tobi_system *s = &w->system[0];
     const double step = sph_viscous_dt(s), fall = 0.25*sqrt(s->smoothing.spacing/fmax(g, 1e-12));
     int most = 0;
-    char text[240];
+    char text[TOBI_NOTE];
     if (w->sim.def.implicit_viscosity) return TOBI_OK;
     if (!(w->sim.def.end_time/step > MANY && step < SHORT*fall) || w->sim.def.time_step > 0) return TOBI_OK;
     for (int f = 1; f < s->fluid_count; f++) {
         const tobi_fluid *a = &s->fluid[f], *b = &s->fluid[most];
         if (a->viscosity/a->density > b->viscosity/b->density) most = f;
     }
-    snprintf(text, sizeof text, "its viscosity, %.4g Pa s, allows steps of %.2g s, %.0f of them until %g s; "
-             "water has 0.001 Pa s, honey 10; implicit_viscosity has no such bound\n",
+    snprintf(text, sizeof text, tr("its viscosity, %.4g Pa s, allows steps of %.2g s, %.0f of them until %g "
+             "s; water has 0.001 Pa s, honey 10; implicit_viscosity has no such bound\n"),
              s->fluid[most].viscosity, step, w->sim.def.end_time/step,
              w->sim.def.end_time);
     return tobi_world_add_notes(w, "fluid", s->fluid[most].name, text, err);
@@ -91,10 +91,10 @@ static tobi_status note_jets(tobi_world *w, tobi_error *err)
 {
     for (int k = 0; k < w->sim.opening_count; k++) {
         const tobi_opening *o = &w->sim.openings[k];
-        char text[240];
+        char text[TOBI_NOTE];
         if (!(o->speed > JET)) continue;
-        snprintf(text, sizeof text, "lets liquid in at up to %.4g m/s: are lengths in metres, and flow rates "
-                 "in %s?\n", o->speed, w->sim.def.dimension == 2 ? "m2/s" : "m3/s");
+        snprintf(text, sizeof text, tr("lets liquid in at up to %.4g m/s: are lengths in metres, and flow "
+                 "rates in %s?\n"), o->speed, w->sim.def.dimension == 2 ? "m2/s" : "m3/s");
         TOBI_TRY(tobi_world_add_notes(w, "inlet", o->name, text, err));
     }
     return TOBI_OK;

@@ -241,7 +241,7 @@ static tobi_status find_nothing(const flood *f, const tobi_region *r, const char
     return tobi_fail(err, TOBI_INVALID, "%s: fill[%d] finds nothing to fill in vessel '%s' below a level of "
                      "%g m%s: it leaks at its lowest place, stands above the level, or its cells of one "
                      "spacing, %g m, are too coarse for it", whose, r->number, f->b->name, r->level,
-                     has_seed(r) ? " at the seed" : "", f->d);
+                     has_seed(r) ? tr(" at the seed") : "", f->d);
 }
 
 /* No compartment at that level: says up to where there is one. */
@@ -417,11 +417,11 @@ static int holds(const tobi_region *r, const tobi_overlap *points, const double 
     return !(r->radius > 0) || square < r->radius*r->radius;
 }
 
-static const char *name_owner(const tobi_world *w, const tobi_region *r, char text[160])
+static const char *name_owner(const tobi_world *w, const tobi_region *r, char text[TOBI_NOTE])
 {
     const tobi_system *s = &w->system[r->system];
     const int solid = s->solid_count > 0;
-    snprintf(text, 160, "%s '%s'", solid ? "solid" : "fluid",
+    snprintf(text, TOBI_NOTE, "%s '%s'", solid ? tr("solid") : tr("fluid"),
              solid ? s->solids[r->owner].name : s->fluid[r->owner].name);
     return text;
 }
@@ -452,7 +452,7 @@ static tobi_status check_overlap(const flood *f, int label, const tobi_world *w,
     for (int k = 0; k < w->region_count; k++) {
         const tobi_region *other = &w->regions[k];
         double x[3];
-        char text[160];
+        char text[TOBI_NOTE];
         int found;
         if (other->system != r->system) continue;
         if (w->system[r->system].solid_count == 0 && other->owner != r->owner) continue;
@@ -461,8 +461,8 @@ static tobi_status check_overlap(const flood *f, int label, const tobi_world *w,
             return tobi_fail(err, TOBI_INVALID, "%s: what fill[%d] fills of vessel '%s' overlaps another "
                              "region, fill[%d] of %s, at (%.4g, %.4g, %.4g) m: %s", whose, r->number,
                              f->b->name, other->number, name_owner(w, other, text), x[0], x[1], x[2],
-                             has_seed(r) && other->in_vessel ? "no wall that reaches above both levels parts "
-                             "the seeds" : "leave the vessel out of that one");
+                             has_seed(r) && other->in_vessel ? tr("no wall that reaches above both levels "
+                             "parts the seeds") : tr("leave the vessel out of that one"));
     }
     return TOBI_OK;
 }
@@ -489,7 +489,8 @@ static tobi_status find_vessel(const tobi_world *w, const tobi_region *r, const 
     f->walls = has_seed(r) ? w->sim.body_count : 1;
     if (!f->b || !f->b->vessel)
         return blame(w, r, "vessel", tobi_fail(err, TOBI_INVALID, "%s: fill[%d] fills '%s', which is no %s",
-                                               whose, r->number, r->vessel, f->b ? "vessel" : "body"), err);
+                                               whose, r->number, r->vessel, f->b ? tr("vessel") : tr("body")),
+                                               err);
     for (int a = 0; a < f->dimension; a++) g += w->sim.def.gravity[a]*w->sim.def.gravity[a];
     if (!(g > 0))
         return tobi_fail(err, TOBI_INVALID, "%s: fill[%d] fills a vessel up to a level, and without gravity "
@@ -521,7 +522,7 @@ static tobi_status place_all(const flood *f, int wanted, tobi_world *w, int *nex
     const int number = (*next)++;
     w->regions[number].in_vessel = 1;
     const tobi_region r = w->regions[number];
-    char text[160];
+    char text[TOBI_NOTE];
     int64_t points = 0;
     for (int k = 1, taken = 0; k <= f->compartments; k++) {
         if (wanted > 0 && k != wanted) continue;
@@ -538,7 +539,7 @@ static tobi_status resolve(tobi_world *w, int *number, tobi_error *err)
 {
     const tobi_region r = w->regions[*number];
     const double *corner = w->system[0].box.lower;
-    char text[160];
+    char text[TOBI_NOTE];
     const char *whose = name_owner(w, &r, text);
     flood f = { 0 };
     tobi_status status = find_vessel(w, &r, whose, &f, err);

@@ -140,10 +140,10 @@ tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *na
                                  tobi_error *err)
 {
     for (const char *end; (end = strchr(notes, '\n')) != NULL; notes = end + 1) {
-        size_t room = (size_t)(end - notes) + strlen(kind) + strlen(name ? name : "") + 8;
+        size_t room = (size_t)(end - notes) + strlen(tr(kind)) + strlen(name ? name : "") + 8;
         char *text = malloc(room);
         if (text)
-            snprintf(text, room, name ? "%s '%s': %.*s" : "%s %s%.*s", kind, name ? name : "",
+            snprintf(text, room, name ? "%s '%s': %.*s" : "%s %s%.*s", tr(kind), name ? name : "",
                      (int)(end - notes), notes);
         TOBI_TRY(keep_note(w, text, err));
     }
@@ -164,7 +164,7 @@ static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_erro
             const double x = b->vertex[i][a], slack = 1e-9*w->sim.def.spacing;
             if (box->periodic[a] || (x >= -slack && x <= box->size[a] + slack)) continue;
             return tobi_fail(err, TOBI_INVALID, "body '%s' sticks out of the domain: a vertex%s is at %c = "
-                             "%g m, allowed is %g to %g m", b->name, b->vessel ? " of its walls" : "",
+                             "%g m, allowed is %g to %g m", b->name, b->vessel ? tr(" of its walls") : "",
                              "xyz"[a], x + box->lower[a], box->lower[a], box->lower[a] + box->size[a]);
         }
     return tobi_at_key(err, tobi_world_check_stroke(w, b, err), "motion");

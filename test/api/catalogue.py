@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""The Japanese catalogue of the program, app/tobiuo/ja.po: whether it has all that tr() is asked for.
+"""The Japanese catalogues app/tobiuo/ja.po and src/ja.po: whether they have all that tr() is asked for.
 
-usage: catalogue.py LIBRARY [ROOT]     exit 1 with a line for each fault; 77 without python3-polib
+usage: catalogue.py LIBRARY [ROOT]      exit 1 with a line for each fault; 77 without python3-polib
+       catalogue.py --update [ROOT]    brings src/ja.po to the order of the sources, new texts without Japanese
 
-The texts are those that the sources mark by tr("...") or TEXT("..."), and what the library says: meanings and units
-of columns, stages of a step. Missing ones are printed as entries to be copied.
+The texts of the program are those that its sources mark by tr("...") or TEXT("..."), and what the library says of
+itself: meanings and units of columns, stages of a step. Those of the library are the formats of its errors and
+mistakes, as tools/check_messages.py finds them, and what src/ marks by tr("...") or TR("..."). Missing ones are
+printed as entries to be copied.
 """
 import ctypes
 import json
@@ -12,10 +15,14 @@ import pathlib
 import re
 import sys
 
-MARKED = re.compile(r'\b(?:tr|TEXT)\(\s*("(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)\s*\)')
+MARKED = re.compile(r'\b(?:tr|TR|TEXT)\(\s*("(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)\s*\)')
+REQUIRED = re.compile(r'\.required = true,[^{}]*?\.doc\s*=\s*("(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)')
 STAGE = re.compile(r"tobi_stage_end\(([^;]*);")
 PIECE = re.compile(r'"((?:[^"\\]|\\.)*)"')
-CONVERSION = re.compile(r"%[-+#0]*(?:\*|\d+)?(?:\.(?:\*|\d+))?(?:hh|h|ll|l|z|j|t)?[diouxXeEfgGcsp%]")
+CONVERSION = re.compile(r"%(?P<place>\d+\$)?(?P<as>[-+#0]*(?:\*|\d+)?(?:\.(?:\*|\d+))?(?:hh|h|ll|l|z|j|t)?[diouxXeEfgGcsp%])")
+SAYS = re.compile(r"\b(?:as|sn|vsn)printf\s*\(|\bREFUSE\(|\b(?:tobi_mesh_note|refuse\w*|fail_\w+|tell|png_error)\s*\(")
+WORDS = re.compile("[a-z%] [a-z]+ ")
+NOT_SAID = ("src/scene/describe/", "src/scene/import/", "src/world/params")     # pages and files, in English
 TAG = re.compile(r"<[^<>]*>")
 TABLES, SOLIDS = 14, 8                         # of enum tobi_table
 
@@ -29,10 +36,43 @@ def literal(pieces):
     return "".join(json.loads(f'"{piece}"') for piece in PIECE.findall(pieces))
 
 
-def marked_texts(root):
-    for path in sorted((root / "app").rglob("*.[ch]")):
+def marked_texts(folder):
+    for path in sorted(folder.rglob("*.[ch]")):
         for found in MARKED.finditer(path.read_text(encoding="utf-8")):
-            yield literal(found.group(1)), path.name
+            yield literal(found.group(1)), str(path)
+
+
+def conversions(text):
+    """Those of a format in the order of its values. Precision may change, so that "%.0s" drops a plural's s."""
+    found = [(m["place"], re.sub(r"\.\d+", "", m["as"])) for m in CONVERSION.finditer(text)]
+    placed = [(int(place[:-1]), kind) for place, kind in found if place]
+    if placed and len(placed) + [kind for _, kind in found].count("%") != len(found):
+        return ["some with a place and some without"]
+    return [kind for _, kind in sorted(placed)] + [kind for place, kind in found if not place]
+
+
+def required_docs(root):
+    """Meanings of keys that a scene must have: a mistake tells them."""
+    for path in sorted((root / "src").rglob("*.c")):
+        text = path.read_text(encoding="utf-8").replace("\\\n", "\n")
+        for found in REQUIRED.finditer(text):
+            yield str(path.relative_to(root)), literal(found.group(1))
+
+
+def check_messages():
+    sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "tools"))
+    import check_messages as tool
+    return tool
+
+
+def library_texts(root):
+    """Formats without a word need no Japanese."""
+    found = [(path, text) for text, path, _ in check_messages().messages(root)]
+    found += [(path.removeprefix(f"{root}/"), text) for text, path in marked_texts(root / "src")]
+    found += required_docs(root)
+    for path, text in sorted(found, key=lambda both: both[0].split(":")[0]):
+        if re.search("[A-Za-z]{2}", CONVERSION.sub("", text)):
+            yield text, path
 
 
 def stage_texts(root):
@@ -62,6 +102,20 @@ def column_texts(library):
                 yield column.doc.decode(), f"column {column.name.decode()}"
 
 
+def unmarked_texts(root):
+    """What goes into a message or a note by %s without tr: a guess by its words."""
+    for path in sorted((root / "src").rglob("*.c")):
+        name, text = str(path.relative_to(root)), path.read_text(encoding="utf-8")
+        for calls, first in (check_messages().CALLS, 1), (SAYS, 0):
+            for call in calls.finditer(text):
+                inside = check_messages().arguments(text, call.end())
+                for found in [*check_messages().LITERALS.finditer(inside)][first:]:
+                    if WORDS.search(found.group(0)) and not re.search(r"\b(tr|TR)\($", inside[:found.start()]):
+                        if not name.startswith(NOT_SAID) and "PRI" not in inside:
+                            line = text.count("\n", 0, call.start()) + 1
+                            yield f"{name}:{line}: not marked by tr: {found.group(0)}"
+
+
 def faults(entries, texts):
     """entries: (msgid, msgstr, fuzzy); texts: dict of texts and their places."""
     seen = {}
@@ -76,7 +130,7 @@ def faults(entries, texts):
             yield f"fuzzy: {where}"
         if japanese in ("", english):
             yield f"without Japanese: {where}"
-        elif CONVERSION.findall(english) != CONVERSION.findall(japanese):
+        elif conversions(english) != conversions(japanese):
             yield f"other conversions or another order: {where}"
         elif sorted(TAG.findall(english)) != sorted(TAG.findall(japanese)):
             yield f"other tags: {where}"
@@ -96,7 +150,8 @@ def check_itself():
         assert len(list(faults(bad, texts))) == 1, bad
     assert [literal(m.group(1)) for m in MARKED.finditer('x(tr("a \\"b\\""\n   " c"), TEXT("d"), str("e"))')] == \
         ['a "b" c', "d"]
-    assert CONVERSION.findall("%.2g %% %-5s %lld %.*s 5 % of") == ["%.2g", "%%", "%-5s", "%lld", "%.*s"]
+    assert conversions("%.2g %% %-5s %lld %.*s 5 % of") == ["g", "%", "-5s", "lld", ".*s"]
+    assert conversions("%2$s %1$.3g") == ["g", "s"] == conversions("%g%.0s") != conversions("%g %2$s")
 
 
 def main(library, root=pathlib.Path(__file__).parents[2]):
@@ -107,16 +162,39 @@ def main(library, root=pathlib.Path(__file__).parents[2]):
         return 77
     check_itself()
     root = pathlib.Path(root)
+    own = [*marked_texts(root / "app"), *column_texts(library), *stage_texts(root)]
+    found = check_catalogue(polib, root, "app/tobiuo/ja.po", own)
+    found += check_catalogue(polib, root, "src/ja.po", library_texts(root))
+    unmarked = list(unmarked_texts(root))
+    print("\n".join(unmarked))
+    return 1 if found + len(unmarked) else 0
+
+
+def check_catalogue(polib, root, name, pairs):
+    """Prints the faults and returns their number."""
     texts = {}
-    for text, place in [*marked_texts(root), *column_texts(library), *stage_texts(root)]:
+    for text, place in pairs:
         texts.setdefault(text, place)
-    catalogue = polib.pofile(str(root / "app/tobiuo/ja.po"), encoding="utf-8")
-    found = list(faults([(e.msgid, e.msgstr, e.fuzzy) for e in catalogue if not e.obsolete], texts))
-    print("\n".join(found + [f"app/tobiuo/ja.po: {len(texts)} texts, {len(found)} faults"]))
-    return 1 if found else 0
+    entries = [e for e in polib.pofile(str(root / name), encoding="utf-8") if not e.obsolete]
+    found = list(faults([(e.msgid, e.msgstr, e.fuzzy) for e in entries], texts))
+    print("\n".join(found + [f"{name}: {len(texts)} texts, {len(found)} faults"]))
+    return len(found)
+
+
+def update(root=pathlib.Path(__file__).parents[2]):
+    import polib
+    path = str(pathlib.Path(root) / "src/ja.po")
+    old = polib.pofile(path, encoding="utf-8", wrapwidth=110)
+    known = {entry.msgid: entry.msgstr for entry in old}
+    for entry in list(old):
+        old.remove(entry)
+    for text in dict.fromkeys(text for text, _ in library_texts(pathlib.Path(root))):
+        old.append(polib.POEntry(msgid=text, msgstr=known.get(text, "")))
+    old.save(path)
+    return 0
 
 
 if __name__ == "__main__":
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
-    sys.exit(main(*sys.argv[1:]))
+    sys.exit(update(*sys.argv[2:]) if sys.argv[1] == "--update" else main(*sys.argv[1:]))

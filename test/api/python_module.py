@@ -56,6 +56,22 @@ class Module(unittest.TestCase):
         tobiuo.run("pool.json", "theirs", until=0.05, force=True)
         self.assertEqual(tobiuo.Results("theirs").times[-1], 0.05)
 
+    def test_texts_in_japanese(self):
+        wrong = with_bodies(FLOAT) | {"spacing": 0, "cfll": 1}
+        tobiuo.set_language("ja")
+        try:
+            mistakes = tobiuo.check(wrong)
+            with self.assertRaisesRegex(tobiuo.Error, "未知のキー") as caught:
+                tobiuo.World(wrong)
+            self.assertEqual(caught.exception.status, "invalid input")
+            with self.assertRaisesRegex(tobiuo.Error, "言語'fr'はない"):
+                tobiuo.set_language("fr")
+        finally:
+            tobiuo.set_language("en")
+        self.assertTrue(any("spacing: 0である。許容範囲は" in line for line in mistakes), mistakes)
+        self.assertEqual([line.split(": ")[0] for line in mistakes],
+                         [line.split(": ")[0] for line in tobiuo.check(wrong)])
+
     def test_fields_at_places_are_those_of_the_program(self):
         pathlib.Path("sampled.json").write_text(json.dumps(with_bodies(FLOAT)), encoding="utf-8")
         subprocess.run([program, "run", "sampled.json", "--out", "sampled", "--quiet"], check=True)

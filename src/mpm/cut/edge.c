@@ -67,7 +67,7 @@ static tobi_status look_for_edge(tobi_body *b, double degrees, int dimension, to
     double length = 0;
     for (int64_t i = 0; i < found.count; i++)
         length += sqrt(vec3_distance2(found.edge[i].a, found.edge[i].b));
-    tobi_mesh_note(&b->mesh, "cuts with an edge of %.4g m, found in its mesh in %lld piece%s", length,
+    tobi_mesh_note(&b->mesh, tr("cuts with an edge of %.4g m, found in its mesh in %lld piece%s"), length,
                    (long long)found.count, found.count == 1 ? "" : "s");
     b->edge = found.edge;
     b->edge_count = found.count;

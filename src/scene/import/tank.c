@@ -161,7 +161,7 @@ static char *find_mesh(tank *t, object *o, tobi_tank_shape *shape)
     mesh = tobi_tank_find(t->directory, o->objfile, &places);
     if (!mesh)
         tobi_source_mistake(&o->source, &at, "cannot find \"%s\", neither with its folders nor by its name; "
-                            "looked in %s", o->objfile, places ? places : "no place: out of memory");
+                            "looked in %s", o->objfile, places ? places : tr("no place: out of memory"));
     else if (tobi_tank_look(mesh, shape, &err) != TOBI_OK)
         tobi_source_mistake(&o->source, &at, "%s", err.text);
     free(places);
@@ -289,7 +289,7 @@ static void sort_object(tank *t, object *o)
     else if (*type) {
         near = tobi_suggest(type, types, 3);
         tobi_source_mistake(&o->source, &at, "\"%s\" is none of Fluid, RigidBody, probe%s%s%s", type,
-                            near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
+                            near ? tr("; did you mean ") : "", near ? near : "", near ? "?" : "");
     }
 }
 
@@ -327,7 +327,7 @@ static void open_object(tank *t, object *o, const json_t *entry)
         return;
     }
     t->im.no_memory |= json_array_append_new(t->paths, json_string(path)) != 0;
-    tobi_status status = tobi_plain_read(path, "object", TOBI_SOURCE_LIMIT, &text, &size, &err);
+    tobi_status status = tobi_plain_read(path, tr("object"), TOBI_SOURCE_LIMIT, &text, &size, &err);
     if (status != TOBI_OK) tobi_source_mistake(setting, &at, "%s", err.text);
     else status = tobi_source_parse(&o->source, path, text, size, setting->report, &err);
     t->im.no_memory |= status == TOBI_NO_MEMORY;

@@ -222,10 +222,10 @@ static tobi_status check_water(const tobi_foam *f, const tobi_foam_water *w, tob
 {
     if (w->count < 0 || w->count > INT32_MAX || (w->count > 0 && (!w->positions || !w->velocities)))
         return tobi_fail(err, TOBI_INVALID, "foam: %" PRId64 " particles%s cannot be followed", w->count,
-                         w->count > 0 && w->count <= INT32_MAX ? " without positions or velocities" : "");
+                         w->count > 0 && w->count <= INT32_MAX ? tr(" without positions or velocities") : "");
     if (w->solid_count < 0 || w->solid_count > INT32_MAX || (w->solid_count > 0 && !w->solids))
         return tobi_fail(err, TOBI_INVALID, "foam: %" PRId64 " points of bodies%s cannot be taken",
-                         w->solid_count, w->solid_count > 0 ? " without positions" : "");
+                         w->solid_count, w->solid_count > 0 ? tr(" without positions") : "");
     if (!isfinite(w->time) || (f->begun && !(w->time > f->before.time)))
         return tobi_fail(err, TOBI_INVALID, "foam: an output at %g s after one at %g s; times must rise",
                          w->time, f->begun ? f->before.time : 0);

@@ -226,11 +226,11 @@ static tobi_status check_def(const tobi_sample_def *d, tobi_error *err)
         if (!isfinite(d->box_min[a]) || !isfinite(d->box_max[a]) || !(d->box_min[a] < d->box_max[a]))
             return tobi_fail(err, TOBI_INVALID, "sample: the box is empty along %c", "xyz"[a]);
     const int64_t count[] = { d->particle_count, d->solid_count, d->place_count };
-    const char *const what[] = { "particles", "points of bodies", "places" };
+    const char *const what[] = { TR("particles"), TR("points of bodies"), TR("places") };
     for (int k = 0; k < 3; k++)
         if (count[k] < 0 || count[k] > INT32_MAX - 1)
             return tobi_fail(err, TOBI_INVALID, "sample: %" PRId64 " %s, allowed are 0 to %d", count[k],
-                             what[k], INT32_MAX - 1);
+                             tr(what[k]), INT32_MAX - 1);
     if (d->particle_count) TOBI_NEED(d->positions, "the positions");
     if (d->solid_count) TOBI_NEED(d->solids, "the points of bodies");
     if (d->place_count) TOBI_NEED(d->places, "the places");

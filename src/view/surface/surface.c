@@ -30,7 +30,8 @@ static tobi_status check_fields(const tobi_surface_def *d, tobi_error *err)
         if (d->fields[f].components < 1 || d->fields[f].components > 9 ||
             (d->particle_count > 0 && !d->fields[f].values))
             return tobi_fail(err, TOBI_INVALID, "surface: field %d has %d components and %s values, allowed "
-                             "are 1 to 9", f, d->fields[f].components, d->fields[f].values ? "some" : "no");
+                             "are 1 to 9", f, d->fields[f].components, d->fields[f].values ? tr("some")
+                             : tr("no"));
     return TOBI_OK;
 }
 
@@ -38,7 +39,7 @@ static tobi_status check_def(const tobi_surface_def *d, tobi_error *err)
 {
     if (d->particle_count < 0 || d->particle_count > INT32_MAX/8 || (d->particle_count > 0 && !d->positions))
         return tobi_fail(err, TOBI_INVALID, "surface: %" PRId64 " particles%s, allowed are 0 to %d",
-                         d->particle_count, d->positions ? "" : " without positions", INT32_MAX/8);
+                         d->particle_count, d->positions ? "" : tr(" without positions"), INT32_MAX/8);
     if (!(d->spacing > 0) || !isfinite(d->spacing))
         return tobi_fail(err, TOBI_INVALID, "surface: a spacing of %g m, must be greater than 0",
                          d->spacing);

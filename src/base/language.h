@@ -1,0 +1,14 @@
+/* Texts for users, in their language. */
+#pragma once
+
+/* The text in the language of tobi_set_language,
+where the catalogue src/ja.po has it; else itself. Formats of
+   errors and mistakes are looked up where they are filled in; what goes into them as %s, and notes, by tr. */
+const char *tobi_text(const char *english) __attribute__((format_arg(1)));
+#define tr(text) tobi_text(text)
+/* Marks a text that tr gets later. */
+#define TR(text) text
+/* strerror in that language; as there, the text may change with the next call. */
+const char *tobi_reason(int code);
+/* Drops the piece of a letter in UTF-8 at the end of a text that was cut. */
+void tobi_text_mend(char *text);
