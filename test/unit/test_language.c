@@ -29,17 +29,17 @@ static void test_mistakes_of_a_scene(void **state)
         "\"max\": [2, 1, 1] } } ] } ] }";
     static const char *const english[] = {
         "s.json:1:64: spacing: is -1, allowed is 1e-7 to 1e5 m",
-        "s.json:2:18: fluids[0].densty: unknown key; did you mean \"density\"?",
-        "s.json:2:42: fluids[0].fill[0].box: reaches from 0 to 2 m in x, the domain only from 0 to 1 m",
+        "s.json:2:17: fluids[0].densty: unknown key; did you mean \"density\"?",
+        "s.json:2:49: fluids[0].fill[0].box: reaches from 0 to 2 m in x, the domain only from 0 to 1 m",
         "s.json:1:1: end_time: is missing (0 to 1e9 s): Simulated time",
-        "s.json:2:16: fluids[0].name: is missing: Name of the fluid",
+        "s.json:2:15: fluids[0].name: is missing: Name of the fluid",
     };
     static const char *const japanese[] = {
         "s.json:1:64: spacing: -1である。許容範囲は1e-7～1e5 m",
-        "s.json:2:18: fluids[0].densty: 未知のキーである。もしかして\"density\"？",
-        "s.json:2:42: fluids[0].fill[0].box: x方向の範囲が0～2 mである。計算領域の範囲は0～1 m",
+        "s.json:2:17: fluids[0].densty: 未知のキーである。もしかして\"density\"？",
+        "s.json:2:49: fluids[0].fill[0].box: x方向の範囲が0～2 mである。計算領域の範囲は0～1 m",
         "s.json:1:1: end_time: 指定がない（0～1e9 s）：計算を終える",
-        "s.json:2:16: fluids[0].name: 指定がない：流体の名前",
+        "s.json:2:15: fluids[0].name: 指定がない：流体の名前",
     };
     expect_mistakes(scene, english, 5);
     choose("ja");
