@@ -248,12 +248,15 @@ void clear_pictures(const char *folder, const char *view);
 /* draw.c: draws from the results of the run in dir, with values of its scene changed, the pictures that
    folder/frames lacks. Returns the exit code. */
 int draw_missing(const char *dir, const char *view, const overrides *set, const char *folder);
-/* Draws those of DIR/frames that are there anew, if they show foam. Returns the exit code. */
+/* Draws those of DIR/frames that are there anew, if they show foam, and those that are missing, if the scene
+   asks for pictures. Returns the exit code. */
 int draw_again(const char *dir, const char *view);
 /* foam.c: foam of the run in dir, as `tobiuo foam` makes it, and its pictures anew. Returns the exit code. */
 int make_foam(const char *dir, int quiet);
 /* Why a run could make none, to stand behind "--foam: "; NULL: it can. */
 const char *foam_objection(const tobi_scene *scene, const tobi_world *world);
+/* 1: pictures of the run can be drawn of its files, when there is foam. */
+int can_draw_later(const tobi_scene *scene);
 /* The path of the first that cannot be read to its end; NULL: none, or no memory. The caller frees. */
 char *find_damaged(const char *dir, const char *view);
 /* sheet.c: whether the PNG has an alpha channel; whether it cannot be read to its end. */

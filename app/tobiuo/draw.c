@@ -156,6 +156,13 @@ static void note_end(const draw_options *o, const tobi_results *results)
         fprintf(stderr, "tobiuo: note: the results of %s end at %g s\n", o->dir, end);
 }
 
+static void note_camera(const source *s)
+{
+    const char *body = tobi_drawing_body_around(s->drawing);
+    if (body)
+        fprintf(stderr, "tobiuo: note: the camera is inside of the body '%s', which hides all else\n", body);
+}
+
 static int draw(const draw_options *o, source *s)
 {
     char *path = NULL;
@@ -167,9 +174,8 @@ static int draw(const draw_options *o, source *s)
     if (code != 0) return code;
     const tobi_picture *p = tobi_drawing_picture(s->drawing);
     if (asprintf(&path, "%s/picture.png", o->dir) < 0) return complain("out of memory");
-    const char *out = o->out ? o->out : path, *body = tobi_drawing_body_around(s->drawing);
-    if (body)
-        fprintf(stderr, "tobiuo: note: the camera is inside of the body '%s', which hides all else\n", body);
+    const char *out = o->out ? o->out : path;
+    note_camera(s);
     code = write_drawing(s, out);
     if (code == 0) printf("picture: %s, %d x %d, %s\n", out, p->width, p->height, p->title);
     free(path);
@@ -214,8 +220,25 @@ static int draw_gaps(source *s, const char *dir, const char *view, const char *f
     for (int64_t k = 0; (k = find_gap(folder, view, k)) < count; k++) missing++;
     if (missing > 0) fprintf(stderr, "tobiuo: note: draws %lld picture%s into %s/frames\n", missing,
                              missing > 1 ? "s" : "", folder);
-    for (int64_t k = 0; code == 0 && (k = find_gap(folder, view, k)) < count; k++)
+    for (int64_t k = 0; code == 0 && (k = find_gap(folder, view, k)) < count; k++) {
         code = draw_into(s, dir, view, folder, k, &lost);
+        if (code == 0 && k == 0 && s->drawing) note_camera(s);
+    }
+    return code == 0 ? say_lost(lost) : code;
+}
+
+/* Those that are there. */
+static int draw_anew(source *s, const char *dir, const char *view)
+{
+    const int64_t count = tobi_results_count(s->results);
+    long long there = 0, lost = 0;
+    int code = 0;
+    for (int64_t k = 0; k < count; k++) there += is_picture(dir, view, k);
+    if (there > 0)
+        fprintf(stderr, "tobiuo: note: draws %lld picture%s in %s/frames anew\n", there, there > 1 ? "s" : "",
+                dir);
+    for (int64_t k = 0; code == 0 && k < count; k++)
+        if (is_picture(dir, view, k)) code = draw_into(s, dir, view, dir, k, &lost);
     return code == 0 ? say_lost(lost) : code;
 }
 
@@ -224,16 +247,10 @@ int draw_again(const char *dir, const char *view)
     const overrides none = { 0 };
     source s = { 0 };
     int code = open_source(&s, dir, view, &none);
-    const int64_t count = code == 0 && s.view->foam ? tobi_results_count(s.results) : 0;
-    long long there = 0, lost = 0;
-    for (int64_t k = 0; k < count; k++) there += is_picture(dir, view, k);
-    if (there > 0)
-        fprintf(stderr, "tobiuo: note: draws %lld picture%s in %s/frames anew\n", there, there > 1 ? "s" : "",
-                dir);
-    for (int64_t k = 0; code == 0 && k < count; k++)
-        if (is_picture(dir, view, k)) code = draw_into(&s, dir, view, dir, k, &lost);
+    if (code == 0 && s.view->foam) code = draw_anew(&s, dir, view);
+    const int lacks = code == 0 && tobi_scene_output_def(s.scene)->frames;
     free_source(&s);
-    return code == 0 ? say_lost(lost) : code;
+    return lacks ? draw_missing(dir, view, &none, dir) : code;
 }
 
 int draw_missing(const char *dir, const char *view, const overrides *set, const char *folder)

@@ -169,7 +169,7 @@ static int write_files(const foam_options *o, const tobi_results *results, const
     return code;
 }
 
-/* The pictures that the run has drawn lack it. */
+/* The pictures that the run has drawn lack it; others have waited for it. */
 static int draw_pictures(const char *dir, const tobi_scene *scene)
 {
     const tobi_output_def *output = tobi_scene_output_def(scene);
@@ -238,10 +238,30 @@ const char *foam_objection(const tobi_scene *scene, const tobi_world *world)
     return liquid ? NULL : "a run without a liquid makes none";
 }
 
+/* 1: an output has it. */
+static int has_field(const char *fields, const char *name)
+{
+    static const char *const usual[] = { "velocity", "pressure", "density" };
+    int is_usual = 0;
+    for (size_t k = 0; k < sizeof usual/sizeof *usual; k++) is_usual |= strcmp(name, usual[k]) == 0;
+    return is_listed(fields, name) || (is_usual && is_listed(fields, "usual"));
+}
+
+int can_draw_later(const tobi_scene *scene)
+{
+    const tobi_output_def *output = tobi_scene_output_def(scene);
+    for (int k = -1; k < output->view_count; k++) {
+        const char *field = k < 0 ? output->view.field : output->views[k].field;
+        const char *whole = field ? tobi_world_find_field(field, NULL, NULL) : NULL;
+        if (field && !has_field(output->fields ? output->fields : "usual", whole ? whole : field)) return 0;
+    }
+    return 1;
+}
+
 const struct argp foam_argp = { .options = options, .parser = parse, .args_doc = "DIR",
     .doc = "Make spray, foam and bubbles of the liquids of the run in DIR, for its pictures: points in "
            "DIR/foam, for each output. The water does not feel them. Pictures that the run has drawn are "
-           "drawn anew with it." };
+           "drawn anew with it, and those that its scene asks for and that are missing are drawn." };
 
 int tobiuo_foam(int argc, char **argv)
 {

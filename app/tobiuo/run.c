@@ -98,15 +98,19 @@ static void print_size(const tobi_run_size *size, const char *dir)
            bytes_text(size->bytes, bytes), size->files, dir);
 }
 
+/* Pictures with foam are drawn once, when there is foam: the run itself draws none. */
 static int record(tobi_scene *scene, tobi_world *world, const run_options *o, const char *dir,
                   const tobi_run_size *size)
 {
     tobi_error err = { 0 };
     tobi_run *run = NULL;
+    char quoted[SHELL_WORD];
+    tobi_output_def output = *tobi_scene_output_def(scene);
+    const int waits = o->foam && output.frames && can_draw_later(scene);
+    if (waits) output.frames = 0;
     char *resolved = tobi_scene_resolved(scene);
     if (!resolved) return complain("out of memory");
-    tobi_status status =
-        tobi_run_create(world, tobi_scene_output_def(scene), dir, o->force, resolved, &run, &err);
+    tobi_status status = tobi_run_create(world, &output, dir, o->force, resolved, &run, &err);
     free(resolved);
     if (status == TOBI_OK) status = tobi_scene_note_files(scene, dir, 0, &err);
     if (!o->quiet && status == TOBI_OK) print_size(size, dir);
@@ -119,6 +123,9 @@ static int record(tobi_scene *scene, tobi_world *world, const run_options *o, co
     drive_options d = { .scene = scene, .dir = dir, .end = tobi_scene_world_def(scene)->end_time,
                         .quiet = o->quiet };
     int code = o->window ? drive_with_window(world, run, &d, scene, o->keys) : drive(world, run, &d);
+    if (waits && code != 0 && code != EXIT_UNWRITTEN)
+        fprintf(stderr, "tobiuo: note: its pictures have waited for the foam; both, now: tobiuo foam %s\n",
+                shell_word(dir, quoted));
     tobi_run_free(run);
     return code;
 }

@@ -55,8 +55,25 @@ check "pictures without foam" cmp bare2.png bare.png
 expect 0 "draws 9 pictures in drawn/frames anew" foam drawn --amount 3
 check "tobiuo foam draws them anew" cmp drawn/frames/frame_000008.png white.png
 views='output.views=[{"name": "side", "picture": {"foam": false}}]'
-expect 0 "draws 9 pictures in own/frames anew" run splash.json --out own --quiet --frames --foam --set "$views"
-check "a view without foam stays" test "$(grep -c anew err.txt)" = 1
+expect 0 "draws 9 pictures into own/frames" run splash.json --out own --quiet --frames --foam --set "$views"
+check "run --foam draws each picture once" test "$(grep -c draws err.txt)" = 2
+check "a view without foam too" test -s own/frames/side_000008.png
+expect 0 "come apart" run splash.json --out live --quiet --frames
+check "a run without foam draws them itself" \
+    test "$(grep -c draws err.txt)" = 0 -a -s live/frames/frame_000008.png
+expect 1 "the output has no field 'pressure'" run splash.json --out lacks --quiet --frames --foam \
+    --set 'output.fields=["velocity"]' --set output.picture.field=pressure
+check "those that no file can draw are the run's" test -s lacks/frames/frame_000008.png
+"$program" run splash.json --out stopped --quiet --frames --foam --until 60 > out.txt 2> err.txt &
+pid=$!
+while [ ! -e stopped/fluid/fluid_000002.vtu ] && kill -0 $pid 2> /dev/null; do sleep 0.01; done
+kill -TERM $pid
+wait $pid
+check "a run that is stopped tells what draws them" \
+    grep -q "its pictures have waited for the foam; both, now: tobiuo foam stopped" err.txt
+check "and has drawn none" test ! -e stopped/frames
+expect 0 "pictures into stopped/frames" foam stopped
+check "tobiuo foam draws them" test -s stopped/frames/frame_000002.png
 expect 0 "" picture own --out own.png
 check "run --foam draws pictures with it" cmp own/frames/frame_000008.png own.png
 expect 0 "" picture own --out own_bare.png --set output.picture.foam=false

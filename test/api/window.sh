@@ -104,6 +104,23 @@ for k in 1 2; do
 done
 differ picture foam_1.png foam_2.png "foam"
 
+# So it is in the window of a run, of outputs that have it; by real keys, when it is made.
+"$program" run splash.json --out live --quiet --window > out.txt 2> err.txt &
+runner=$!
+for _ in $(seq 600); do grep -q '"complete"' live/summary.json 2> /dev/null && break; sleep 0.1; done
+expect 0 "" foam live --amount 100
+xdotool search --name live windowfocus > /dev/null
+for k in 1 2; do
+    xdotool key greater key b key s
+    for _ in $(seq 600); do [ -s live/window_$k.png ] && sleep 0.2 && break; sleep 0.1; done
+    rm -rf live/foam
+done
+xdotool key q key Return
+wait $runner
+mv live/window_1.png live_1.png
+mv live/window_2.png live_2.png
+differ picture live_1.png live_2.png "foam in the window of a run"
+
 look keys "shshsfsFs+s-sns>s<sb0sq"
 differ help,-line keys_1.png keys_2.png "h"
 differ $all keys_1.png keys_3.png "h again"
