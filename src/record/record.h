@@ -13,6 +13,7 @@
 #include "record/line_tube.h"
 #include "tobiuo/drawing.h"
 #include "tobiuo/run.h"
+#include "tobiuo/surface.h"
 #include <pthread.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -56,6 +57,13 @@ typedef struct tobi_record_view {
     tobi_record_field field;              /* that colours it; name NULL = none       */
     int follow;                           /* body of the camera, or -1               */
 } tobi_record_view;
+
+/* A field of the surface, or one component of it. */
+typedef struct tobi_record_surface_field {
+    tobi_record_field of;
+    int component;                        /* -1: all                                 */
+    char name[40];
+} tobi_record_surface_field;
 
 /* What has particles or nodes in a file of its own: folder NAME, files NAME_000000.vtu. */
 enum { TOBI_SET_FLUID, TOBI_SET_BODIES, TOBI_SET_GRID, TOBI_SETS };
@@ -120,7 +128,7 @@ struct tobi_run {
     tobi_record_view view[1 + TOBI_VIEW_LIMIT];
     int view_count;
     int64_t pictures, picture_ns;         /* written; wall clock: atomic             */
-    tobi_record_field surface_field[TOBI_RECORD_FIELD_LIMIT];
+    tobi_record_surface_field surface_field[TOBI_SURFACE_FIELD_LIMIT];
     int surface_fields;
     char (*body_file)[96];                /* names of the bodies' surface files      */
     char (*traction_file)[96];            /* of their tractions                      */

@@ -51,7 +51,10 @@ static void add_surface(tobi_run_size *size, const tobi_output_def *o, const tob
 static double surface_bytes(const tobi_run *run, double particles)
 {
     double vertices = 2*6*cbrt(particles)*cbrt(particles), each = 3*sizeof(double) + 16 + 2*20;
-    for (int k = 0; k < run->surface_fields; k++) each += 4*run->surface_field[k].components;
+    for (int k = 0; k < run->surface_fields; k++) {
+        const tobi_record_surface_field *f = &run->surface_field[k];
+        each += 4*(f->component < 0 ? f->of.components : 1);
+    }
     return vertices*each/pow(run->output.surface_cell/0.75, 2);
 }
 

@@ -25,12 +25,19 @@ void tobi_record_free_surface(tobi_record_surface *s)
     free(s);
 }
 
+/* A name twice counts once. */
 static tobi_status add_field(tobi_run *run, const char *name, size_t length, tobi_error *err)
 {
-    tobi_record_field field = { 0 };
-    TOBI_TRY(tobi_record_find_field(run, "output.surface.fields", name, length, &field, err));
+    tobi_record_surface_field field = { .component = -1 };
+    snprintf(field.name, sizeof field.name, "%.*s", (int)length, name);
+    const char *whole = tobi_world_find_field(field.name, &field.component, NULL);
+    const int is_part = whole && field.component >= 0;
+    TOBI_TRY(tobi_record_find_field(run, "output.surface.fields", is_part ? whole : name,
+                                    is_part ? strlen(whole) : length, &field.of, err));
     for (int k = 0; k < run->surface_fields; k++)
-        if (run->surface_field[k].name == field.name) return TOBI_OK;
+        if (strcmp(run->surface_field[k].name, field.name) == 0) return TOBI_OK;
+    if (run->surface_fields == TOBI_SURFACE_FIELD_LIMIT)
+        return tobi_fail(err, TOBI_INVALID, "output.surface.fields: more than %d", TOBI_SURFACE_FIELD_LIMIT);
     run->surface_field[run->surface_fields++] = field;
     return TOBI_OK;
 }
@@ -89,6 +96,17 @@ static tobi_status find_spacings(const tobi_run *run, tobi_record_surface *s, in
     return TOBI_OK;
 }
 
+static tobi_status take_values(tobi_run *run, const tobi_record_surface_field *f, int64_t n, double **values,
+                               tobi_error *err)
+{
+    const int64_t each = f->of.components;
+    double *v = *values = malloc((size_t)(n*each)*sizeof *v + 1);
+    if (!v) return tobi_fail(err, TOBI_NO_MEMORY, "surface: out of memory");
+    TOBI_TRY(tobi_world_read(run->world, TOBI_FLUID, f->of.name, v, n*each, err));
+    for (int64_t i = 0; f->component >= 0 && i < n; i++) v[i] = v[each*i + f->component];
+    return TOBI_OK;
+}
+
 tobi_status tobi_record_take_surface(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
     const int64_t n = snapshot->set[TOBI_SET_FLUID].count;
@@ -103,13 +121,8 @@ tobi_status tobi_record_take_surface(tobi_run *run, tobi_snapshot *snapshot, tob
         memcpy(s->position[i], snapshot->set[TOBI_SET_FLUID].position[i], sizeof s->position[i]);
         if (tobi_looks_hides(&run->looks, time, s->position[i])) s->position[i][0] = NAN;
     }
-    for (int f = 0; f < run->surface_fields; f++) {
-        const tobi_record_field *field = &run->surface_field[f];
-        s->values[f] = malloc((size_t)n*(size_t)field->components*sizeof(double) + 1);
-        if (!s->values[f]) return tobi_fail(err, TOBI_NO_MEMORY, "surface: out of memory");
-        TOBI_TRY(tobi_world_read(run->world, TOBI_FLUID, field->name, s->values[f], n*field->components,
-                                 err));
-    }
+    for (int f = 0; f < run->surface_fields; f++)
+        TOBI_TRY(take_values(run, &run->surface_field[f], n, &s->values[f], err));
     return find_groups(run, s->group, err);
 }
 
@@ -131,9 +144,11 @@ tobi_status tobi_record_write_surface(tobi_run *run, const tobi_snapshot *snapsh
     d.threads = w->threads;
     d.fields = fields;
     d.field_count = run->surface_fields;
-    for (int f = 0; f < d.field_count; f++)
-        fields[f] = (tobi_surface_field){ run->surface_field[f].name, run->surface_field[f].components,
+    for (int f = 0; f < d.field_count; f++) {
+        const tobi_record_surface_field *own = &run->surface_field[f];
+        fields[f] = (tobi_surface_field){ own->name, own->component < 0 ? own->of.components : 1,
                                           snapshot->skin->values[f] };
+    }
     for (int a = 0; a < 3; a++) {
         d.box_min[a] = w->domain_min[a], d.box_max[a] = w->domain_max[a];
         d.flat_min[a] = d.flat_max[a] = 1;

@@ -98,12 +98,16 @@ static void check_field(const tobi_scene *scene, tobi_source *source, const tobi
     else tobi_source_mistake(source, place, "there is no field \"%s\"; allowed are %s", field, all);
 }
 
+/* parts: components of fields are names too. */
 static void check_names(const tobi_scene *scene, tobi_source *source, const tobi_place *place,
-                        const char *names)
+                        const char *names, int parts)
 {
     char *copy = strdup(names ? names : ""), *next = copy;
-    for (char *field; copy && (field = strsep(&next, ",")) != NULL;)
-        if (*field) check_field(scene, source, place, field);
+    for (char *field; copy && (field = strsep(&next, ",")) != NULL;) {
+        int component = -1;
+        const char *whole = parts ? tobi_world_find_field(field, &component, NULL) : NULL;
+        if (*field) check_field(scene, source, place, component < 0 ? field : whole);
+    }
     free(copy);
 }
 
@@ -142,9 +146,7 @@ static void check_view(const tobi_scene *scene, tobi_source *source, const tobi_
         memcmp(view->position, view->look_at, sizeof view->look_at) == 0)
         tobi_source_mistake(source, &angle, "needs a camera.position that is not camera.look_at");
     check_camera(source, view, &camera);
-    int component = -1;
-    const char *whole = tobi_world_find_field(view->field, &component, NULL);
-    if (view->field) check_names(scene, source, &field, component < 0 ? view->field : whole);
+    if (view->field) check_names(scene, source, &field, view->field, 1);
     check_field_of(scene, source, &field_of, view->field_of);
     if (view->follow && !tobi_scene_find_body(scene, view->follow))
         tobi_source_mistake(source, &follow, "\"%s\" is no body of the scene", view->follow);
@@ -187,6 +189,6 @@ void tobi_output_check(const tobi_scene *scene, tobi_source *source)
     if (scene->output.tractions && tobi_method_describe(scene->world.method, &method) && method.solids)
         tobi_source_mistake(source, &tractions, "%s has no fluid that presses on bodies", method.name);
     check_views(scene, source, &output);
-    check_names(scene, source, &fields, scene->output.fields);
-    check_names(scene, source, &of_surface, scene->output.surface_fields);
+    check_names(scene, source, &fields, scene->output.fields, 0);
+    check_names(scene, source, &of_surface, scene->output.surface_fields, 1);
 }

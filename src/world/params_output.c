@@ -142,8 +142,8 @@ static const tobi_param output_rows[] = {
       .unit = "rounds", .doc = "Rounds of smoothing; drops and threads are left as they are." },
     { .key = "surface.fields", TEXT, AT(tobi_output_def, surface_fields), .unit = "names",
       .text = "usual",
-      .doc = "Fields of the surface's vertices, means of the particles around. usual, alone or among others, "
-             "stands for velocity and pressure." },
+      .doc = "Fields of the surface's vertices, means of the particles around, or components of them such as "
+             "velocity_x. usual, alone or among others, stands for velocity and pressure." },
     VIEW_ROWS(tobi_output_def, view.)
     { 0 }
 };

@@ -12,7 +12,7 @@ static void test_files(void **state)
         tobi_world *world = make_world(2, names);
         tobi_output_def output = make_output();
         output.surface = 1;
-        output.surface_fields = "usual,density,velocity";
+        output.surface_fields = "usual,density,velocity,velocity_z,velocity_z";
         tobi_run *run = create(world, &output, at("%d", threads), 0);
         step_until(run, 0.008);
         tobi_run_free(run);
@@ -24,6 +24,9 @@ static void test_files(void **state)
         size_t n;
         char *text = read_file(one, &n);
         assert_true(strstr(text, "velocity") && strstr(text, "pressure"));
+        assert_true(strstr(text, "Name=\"velocity\" NumberOfComponents=\"3\""));
+        const char *part = strstr(text, "Name=\"velocity_z\"");
+        assert_true(part && !strstr(part + 1, "Name=\"velocity_z\""));
         assert_true(strstr(text, "density") && strstr(text, "<PointData Normals=\"normals\">"));
         free(text);
     }
@@ -102,6 +105,8 @@ static void test_mistakes(void **state)
     tobi_world *world = make_world(0, NULL);
     output.surface_fields = "velocity,sped";
     expect_refused(world, &output, "output.surface.fields: there is no field 'sped' of dfsph");
+    output.surface_fields = "velocity_q";
+    expect_refused(world, &output, "output.surface.fields: there is no field 'velocity_q' of dfsph");
     output.surface_fields = "velocity";
     output.surface_cell = 0.01;
     expect_refused(world, &output, "surface.cell");
