@@ -226,21 +226,27 @@ static int count_shapes(json_t *value, const char **last)
     return count;
 }
 
+/* given: the object with the corners that are in lower and upper. */
+static void check_corners(tobi_source *source, const tobi_place *box, const json_t *given,
+                          const double lower[3], const double upper[3], int dimension)
+{
+    if (!json_is_array(json_object_get(given, "min")) || !json_is_array(json_object_get(given, "max"))) {
+        tobi_source_mistake(source, box, "must have two corners, min and max");
+        return;
+    }
+    for (int a = 0; a < dimension; a++)
+        if (!(upper[a] > lower[a]))
+            tobi_source_mistake(source, box, "min is %.10g and max is %.10g in %c, max must be greater",
+                                lower[a], upper[a], axis_name[a]);
+}
+
 static void check_body_box(const tobi_scene *scene, tobi_source *source, int body, const tobi_place *entry)
 {
     const tobi_body_def *def = &scene->bodies[body].def;
     json_t *value = json_array_get(json_object_get(scene->root, "bodies"), (size_t)body);
-    json_t *given = json_object_get(value, "box");
     tobi_place box = { entry, "box", 0 };
-    if (!json_is_array(json_object_get(given, "min")) || !json_is_array(json_object_get(given, "max"))) {
-        tobi_source_mistake(source, &box, "must have two corners, min and max");
-        return;
-    }
-    for (int a = 0; a < scene->world.dimension; a++)
-        if (!(def->box_max[a] > def->box_min[a]))
-            tobi_source_mistake(source, &box,
-                                "min is %.10g and max is %.10g in %c, max must be greater",
-                                def->box_min[a], def->box_max[a], axis_name[a]);
+    check_corners(source, &box, json_object_get(value, "box"), def->box_min, def->box_max,
+                  scene->world.dimension);
 }
 
 void tobi_check_outline(tobi_source *source, const tobi_place *outline, const tobi_outline_def *def,
@@ -366,6 +372,19 @@ static void check_porous(const tobi_scene *scene, tobi_source *source)
     }
 }
 
+/* A box with both corners at 0 would be none. */
+static void check_values(const tobi_scene *scene, tobi_source *source)
+{
+    const tobi_place values = { &root, "scalar_values", 0 };
+    for (int i = 0; i < scene->tank.value_count && !tobi_report_full(source->report); i++) {
+        const tobi_place entry = { &values, NULL, (size_t)i }, at_box = { &entry, "box", 0 };
+        const tobi_scalar_value_def *def = &scene->tank.values[i];
+        const json_t *value = json_array_get(json_object_get(scene->root, values.key), (size_t)i);
+        const json_t *box = json_object_get(value, at_box.key);
+        if (box) check_corners(source, &at_box, box, def->box_min, def->box_max, scene->world.dimension);
+    }
+}
+
 void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
 {
     check_method(scene, source);
@@ -378,6 +397,7 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     check_bodies(scene, source);
     check_planes(scene, source);
     check_porous(scene, source);
+    check_values(scene, source);
     tobi_unused_check(scene, source);
     tobi_check_probes(scene, source);
     tobi_lines_check(scene, source);

@@ -101,6 +101,16 @@ static void drop_shapes(const tobi_scene_tank *t, json_t *zones)
     }
 }
 
+/* So is a value that has a box or is elsewhere. */
+static void drop_boxes(const tobi_scene_tank *t, json_t *values)
+{
+    for (int k = 0; k < t->value_count; k++) {
+        const tobi_scalar_value_def *v = &t->values[k];
+        if (v->fluid || v->inlet || v->body || v->side != TOBI_SIDE_NONE)
+            json_object_del(json_array_get(values, (size_t)k), "box");
+    }
+}
+
 int tobi_tank_write(const tobi_scene_tank *t, json_t *root)
 {
     int failed = write_list(&damping, t->damping, t->damping_count, root) |
@@ -108,6 +118,7 @@ int tobi_tank_write(const tobi_scene_tank *t, json_t *root)
                  write_list(&scalars, t->scalars, t->scalar_count, root) |
                  write_list(&values, t->values, t->value_count, root);
     drop_shapes(t, json_object_get(root, "porous_zones"));
+    drop_boxes(t, json_object_get(root, "scalar_values"));
     if (t->changes)
         failed |= json_object_set_new(root, "gravity_in_time",
                                       tobi_write_def(&tobi_gravity_table, &t->gravity));

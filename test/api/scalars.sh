@@ -96,6 +96,10 @@ refuse "temperature is given already" scalars[1].field=temperature
 expect 1 'field: is "temperature", and the scene has none; scalars are to have it' check tank.json \
     --set "scalars=[]" --set "scalar_values=[]"
 refuse "diffusivity" scalars[0].diffusivity=-1
+refuse "scalar_values[0].box: min is 0 and max is 0 in x, max must be greater" \
+    'scalar_values[0].box={"min": [0, 0], "max": [0, 0]}'
+refuse "scalar_values[2].box: min is 0 and max is 0 in y, max must be greater" 'scalar_values[2].box.max=[1, 0]'
+refuse "scalar_values[2].box: must have two corners, min and max" 'scalar_values[2].box={"max": [0.2, 0.2]}'
 expect 0 "" sweep tank.json --set scalar_values[0].value=40,60 --set output.frames=false --until 0.05 --out s
 check "a sweep has the largest flow" grep -q ",max floor_temperature_flow \[W per m\]" s/sweep.csv
 expect 0 "" describe scalars
