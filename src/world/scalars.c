@@ -18,9 +18,6 @@ static const char *const side_name[] = { "x_min", "x_max", "y_min", "y_max", "z_
 /* Half the density at most: beyond it a change of weight is no small one. */
 static const double MOST_CHANGE = 0.5;
 
-/* Beyond any difference: maxima of sums begin at 0. */
-static const double MOST_DIFFERENCE = 1e7;
-
 static tobi_status check_world(const tobi_world *w, tobi_error *err)
 {
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more scalars");
@@ -174,19 +171,31 @@ tobi_status tobi_world_add_scalar_value(tobi_world *w, const tobi_scalar_value_d
     return TOBI_OK;
 }
 
-typedef struct measuring { const tobi_system *s; const tobi_double2 *at; int field; double value; } measuring;
+/* first: the value of one of the particles. */
+typedef struct measuring {
+    const tobi_system *s;
+    const tobi_double2 *at;
+    int field;
+    double value, first;
+} measuring;
 
-/* totals: mass, mass times the difference from `value`; [6] of the least, [7] of the largest difference. */
+static double get_value(const tobi_double2 *at, int field)
+{
+    return field == TOBI_TEMPERATURE ? at->x : at->y;
+}
+
+/* totals: mass, mass times the difference from `value`; how far values go [6] below, [7] above the first:
+   maxima begin at 0. */
 static void measure_range(const void *view, int64_t begin, int64_t end, double *t)
 {
     const measuring *m = view;
     for (int64_t i = begin; i < end; i++) {
         const double mass = m->s->smoothing.volume*m->s->fluid[m->s->particles.fluid[i]].density,
-                     more = (m->field == TOBI_TEMPERATURE ? m->at[i].x : m->at[i].y) - m->value;
+                     value = get_value(&m->at[i], m->field);
         t[0] += mass;
-        t[1] += mass*more;
-        t[6] = fmax(t[6], MOST_DIFFERENCE - more);
-        t[7] = fmax(t[7], MOST_DIFFERENCE + more);
+        t[1] += mass*(value - m->value);
+        t[6] = fmax(t[6], m->first - value);
+        t[7] = fmax(t[7], value - m->first);
     }
 }
 
@@ -198,14 +207,15 @@ int tobi_world_scalar(const tobi_world *w, int number, tobi_scalar_info *info)
     if (!w || field == TOBI_SCALAR_LIMIT) return 0;
     if (!info) return 1;
     const tobi_system *s = &w->system[0];
-    const measuring m = { s, tobi_scalars_of(&s->particles), field, w->sim.scalar[field].value };
+    measuring m = { s, tobi_scalars_of(&s->particles), field, w->sim.scalar[field].value, 0 };
     double t[TOBI_TOTALS] = { 0 };
     *info = (tobi_scalar_info){ field_name[field], field_unit[field], m.value, m.value, m.value, 0 };
+    if (m.at && s->particles.count > 0) m.first = get_value(m.at, field);
     if (m.at)
         tobi_launch((tobi_exec *)&w->sim.exec, TOBI_HOST(measure_range, 2, 2), &m, 0, s->particles.count, t);
     if (!(t[0] > 0)) return 1;
-    info->least = m.value + MOST_DIFFERENCE - t[6];
-    info->most = m.value - MOST_DIFFERENCE + t[7];
+    info->least = m.first - t[6];
+    info->most = m.first + t[7];
     info->mean += t[1]/t[0];
     info->amount = t[1]*w->sim.scalar[field].capacity;
     return 1;

@@ -146,6 +146,28 @@ static void fluxes_bring_what_they_say(void **state)
     tobi_world_destroy(w);
 }
 
+/* Extremes are those of the particles, however far from the value at the start. */
+static void extremes_have_any_size(void **state)
+{
+    tobi_world *w = make_slab("dfsph", 2, LENGTH/20, NULL);
+    double least = INFINITY, most = -INFINITY;
+    (void)state;
+    add_temperature(w, 20, 0);
+    add_side(w, TOBI_X_MIN, TOBI_NO_VALUE, 1e12, 0);
+    add_side(w, TOBI_X_MAX, TOBI_NO_VALUE, -1e12, 0);
+    advance(w, 12);
+    const int64_t n = tobi_world_count(w, TOBI_FLUID);
+    double *c = malloc((size_t)n*sizeof *c);
+    assert_non_null(c);
+    OK(tobi_world_read(w, TOBI_FLUID, "temperature", c, n, &err));
+    for (int64_t i = 0; i < n; i++) least = fmin(least, c[i]), most = fmax(most, c[i]);
+    assert_true(most > 1.2e7 && least < -1.2e7);
+    close_to("most", "dfsph", look(w).most, most, 1e-14);
+    close_to("least", "dfsph", look(w).least, least, 1e-14);
+    free(c);
+    tobi_world_destroy(w);
+}
+
 /* Liquid that goes along the wall; the bound was set before the first run. */
 static void moving_liquid_takes_a_flux(void **state)
 {
@@ -455,7 +477,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plates_conduct_by_all),      cmocka_unit_test(layers_resist),
         cmocka_unit_test(fluxes_bring_what_they_say), cmocka_unit_test(halves_mix),
-        cmocka_unit_test(moving_liquid_takes_a_flux),
+        cmocka_unit_test(moving_liquid_takes_a_flux), cmocka_unit_test(extremes_have_any_size),
         cmocka_unit_test(bodies_conduct),             cmocka_unit_test(warm_liquid_is_lighter),
         cmocka_unit_test(all_gravity_pulls_less),
         cmocka_unit_test(warm_liquid_is_thinner_by_all),
