@@ -63,6 +63,63 @@ double tobi_polygon_common(tobi_polygon p, tobi_polygon q)
     return fabs(sum);
 }
 
+/* A side of a prism: where it lies at a height, from `from` on and up to `to` alone. */
+typedef struct side { const double *a, *b; int up; double from, to; } side;
+
+static double place(const side *s, double z)
+{
+    const int x = 1 - s->up;
+    const double share = (z - s->a[s->up])/(s->b[s->up] - s->a[s->up]);
+    return fmin(fmax(s->a[x] + share*(s->b[x] - s->a[x]), s->from), s->to) - s->from;
+}
+
+/* The height at which it comes to a limit, if that lies within; else one of these. */
+static double find_height(const side *s, double limit, double from, double to)
+{
+    const int x = 1 - s->up;
+    const double way = s->b[x] - s->a[x];
+    if (way == 0) return from;
+    return fmin(fmax(s->a[s->up] + (limit - s->a[x])/way*(s->b[s->up] - s->a[s->up]), from), to);
+}
+
+/* The integral of the product of two places over the heights of both sides, below 0 if they go opposite ways:
+   between its kinks it is a parabola. */
+static double sweep(const side *p, const side *q)
+{
+    const double from = fmax(fmin(p->a[p->up], p->b[p->up]), fmin(q->a[q->up], q->b[q->up]));
+    const double to = fmin(fmax(p->a[p->up], p->b[p->up]), fmax(q->a[q->up], q->b[q->up]));
+    const double sign = (p->b[p->up] > p->a[p->up]) == (q->b[q->up] > q->a[q->up]) ? 1 : -1;
+    double at[6] = { from, to, from, from, from, from }, sum = 0;
+    if (!(to > from)) return 0;
+    for (int k = 0; k < 4; k++) {
+        const side *s = k < 2 ? p : q;
+        at[2 + k] = find_height(s, k % 2 ? s->to : s->from, from, to);
+    }
+    for (int i = 1; i < 6; i++)
+        for (int j = i; j > 0 && at[j] < at[j - 1]; j--) {
+            const double other = at[j];
+            at[j] = at[j - 1], at[j - 1] = other;
+        }
+    for (int k = 0; k < 5; k++) {
+        const double low = at[k], high = at[k + 1], middle = 0.5*(low + high);
+        sum += (high - low)/6*(place(p, low)*place(q, low) + 4*place(p, middle)*place(q, middle) +
+                               place(p, high)*place(q, high));
+    }
+    return sign*sum;
+}
+
+double tobi_polygon_crossed(const tobi_crossed *a, const tobi_crossed *b)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < a->polygon.count; i++)
+        for (int64_t j = 0; j < b->polygon.count; j++) {
+            const side p = { a->polygon.at[i], next_of(a->polygon, i), a->up, a->from, a->to };
+            const side q = { b->polygon.at[j], next_of(b->polygon, j), b->up, b->from, b->to };
+            sum += sweep(&p, &q);
+        }
+    return fabs(sum);
+}
+
 void tobi_polygon_longest(tobi_polygon p, double along[2])
 {
     double most = 0;

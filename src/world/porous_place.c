@@ -1,5 +1,5 @@
-/* Where porous zones lie: their boxes, outlines and cylinders, and that they do not overlap. Drawback: shapes
-   along different axes are told apart by their boxes alone. */
+/* Where porous zones lie: their boxes, outlines and cylinders, and that they do not overlap. Drawback:
+   overlaps see cylinders as polygons. */
 #include "base/error.h"
 #include "geom/outline.h"
 #include "world/world.h"
@@ -135,6 +135,23 @@ static tobi_polygon cut(const tobi_porous *z, const int plane[2], double room[4]
     return (tobi_polygon){ (const double (*)[2])room, 4 };
 }
 
+/* As another one sees it that goes along a different axis. */
+static tobi_crossed cross(const tobi_porous *z, const tobi_porous *other)
+{
+    return (tobi_crossed){ tobi_porous_polygon(z), z->plane[0] == other->axis,
+                           other->lower[other->axis], other->upper[other->axis] };
+}
+
+static tobi_status check_crossed(const tobi_porous *z, const tobi_porous *other, const char *name,
+                                 const char *key, tobi_error *err)
+{
+    const tobi_crossed a = cross(z, other), b = cross(other, z);
+    const double common = tobi_polygon_crossed(&a, &b);
+    if (common <= SLIVER*fmin(z->extent, other->extent)) return TOBI_OK;
+    REFUSE(TOBI_INVALID, key, "porous zone '%s' overlaps '%s' by %.3g m3: allowed are zones that touch, and "
+           "slivers up to %g of the smaller one", name, other->name, common, SLIVER);
+}
+
 static tobi_status check_overlap(const tobi_porous *z, const tobi_porous *other, const char *name,
                                  int dimension, tobi_error *err)
 {
@@ -147,9 +164,7 @@ static tobi_status check_overlap(const tobi_porous *z, const tobi_porous *other,
                name, other->name);
     const char *key = z->radius > 0 ? "cylinder" : z->corners ? "outline" : "box";
     if (z->corners && other->corners && z->axis != other->axis)
-        REFUSE(TOBI_UNSUPPORTED, key, tr("the porous zones '%s' and '%s' go along different "
-               "axes, and the boxes around them overlap: allowed are such that touch at most"), name,
-               other->name);
+        return check_crossed(z, other, name, key, err);
     const tobi_polygon a = cut(z, drawn->plane, room[0]), b = cut(other, drawn->plane, room[1]);
     const double least = fmin(tobi_polygon_measure(a).area, tobi_polygon_measure(b).area);
     const double common = tobi_polygon_common(a, b);

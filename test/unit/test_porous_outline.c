@@ -216,13 +216,53 @@ static void zones_do_not_overlap(void **state)
     z.name = "behind";
     z.outline.from = 0.2, z.outline.to = 0.3;
     OK(tobi_world_add_porous(deep, &z, &err));
-    z = make_zone("across", "0.1,0.15 0.2,0.15 0.2,0.3");
-    z.outline.axis = 2;
-    REFUSED(tobi_world_add_porous(deep, &z, &err), TOBI_UNSUPPORTED,
-            "'across' and 'mound' go along different axes");
-    z.outline.from = 0.8;
-    OK(tobi_world_add_porous(deep, &z, &err));
     tobi_world_destroy(deep);
+}
+
+/* m3, of a square tube along z with the triangle below, along y. */
+static double tube_with(double x, double from, double to)
+{
+    const double square[4][2] = { { x, 0.2 }, { x + 0.4, 0.2 }, { x + 0.4, 0.6 }, { x, 0.6 } };
+    const double roof[3][2] = { { 0, 0 }, { 1, 0 }, { 0, 1 } };      /* x, z */
+    const tobi_crossed tube = { { square, 4 }, 0, 0, 0.5 };          /* its y, where the roof is */
+    const tobi_crossed prism = { { roof, 3 }, 0, from, to };         /* its z, where the tube is */
+    const double one = tobi_polygon_crossed(&tube, &prism), other = tobi_polygon_crossed(&prism, &tube);
+    assert_true(fabs(one - other) < 1e-14);
+    return one;
+}
+
+/* Of y from 0.2 to 0.5 all counts; over x the roof is 1 - x high. */
+static void prisms_that_cross_have_a_common_part(void **state)
+{
+    (void)state;
+    assert_true(fabs(tube_with(0.1, 0, 2) - 0.3*0.4*(1 - 0.3)) < 1e-14);
+    assert_true(fabs(tube_with(0.1, 0.2, 0.3) - 0.3*0.4*0.1) < 1e-14);
+    assert_true(fabs(tube_with(0.8, 0, 2) - 0.3*0.5*0.2*0.2) < 1e-14);
+    assert_true(fabs(tube_with(0.8, 0.1, 0.15) - 0.3*(0.05*0.05 + 0.5*0.05*0.05)) < 1e-14);
+    assert_true(tube_with(0.8, 0.2, 2) < 1e-14);
+    assert_true(tube_with(1, 0, 2) < 1e-14);
+}
+
+/* By their shapes, not by the boxes around them. */
+static void zones_along_different_axes(void **state)
+{
+    tobi_world *w = make_channel(3, 1);
+    tobi_porous_def z = make_zone("mound", "0.4,0.1 0.5,0.2 0.7,0.2 0.8,0.1");
+    (void)state;
+    z.outline.to = 0.2;
+    OK(tobi_world_add_porous(w, &z, &err));
+    z = make_zone("across", "0.4,0.12 0.46,0.18 0.4,0.18");
+    z.outline.axis = 1;
+    z.outline.from = 0.17, z.outline.to = 0.3;
+    OK(tobi_world_add_porous(w, &z, &err));
+    z.name = "lower";
+    z.outline.from = 0.11, z.outline.to = 0.15;
+    REFUSED(tobi_world_add_porous(w, &z, &err), TOBI_INVALID, "porous zone 'lower' overlaps 'mound' by ");
+    z = make_zone("pile", NULL);
+    z.cylinder_start[0] = z.cylinder_end[0] = 0.4, z.cylinder_start[1] = z.cylinder_end[1] = 0.15;
+    z.cylinder_radius = 0.04, z.cylinder_start[2] = 0.15, z.cylinder_end[2] = 0.165;
+    OK(tobi_world_add_porous(w, &z, &err));
+    tobi_world_destroy(w);
 }
 
 static void wrong_outlines_are_refused(void **state)
@@ -381,6 +421,8 @@ int main(void)
         cmocka_unit_test(polygons_hold_what_is_inside), cmocka_unit_test(each_point_is_in_one_of_all),
         cmocka_unit_test(common_areas_are_exact), cmocka_unit_test(a_rectangle_is_the_box),
         cmocka_unit_test(layers_share_their_slopes), cmocka_unit_test(zones_do_not_overlap),
+        cmocka_unit_test(zones_along_different_axes),
+        cmocka_unit_test(prisms_that_cross_have_a_common_part),
         cmocka_unit_test(wrong_outlines_are_refused), cmocka_unit_test(notes_know_outlines),
         cmocka_unit_test(screens_lie_along_their_outline), cmocka_unit_test(pictures_have_the_edges),
         cmocka_unit_test(scenes_say_it),
