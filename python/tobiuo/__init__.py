@@ -10,9 +10,9 @@ All units are SI. A call that fails raises tobiuo.Error with the text of the lib
 from .library import Error, set_language, version as __version__
 from .results import Moment, Results, read_table
 from .run import run
-from .sampling import Sample, sample
+from .sampling import Means, Sample, sample
 from .scene import check, describe, shipped
 from .world import World
 
-__all__ = ["Error", "Moment", "Results", "Sample", "World", "__version__", "check", "describe", "read_table", "run", "sample",
-           "set_language", "shipped"]
+__all__ = ["Error", "Means", "Moment", "Results", "Sample", "World", "__version__", "check", "describe", "read_table",
+           "run", "sample", "set_language", "shipped"]

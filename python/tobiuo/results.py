@@ -63,17 +63,31 @@ class Results:
         finally:
             lib.tobi_moment_free(m)
 
-    def sample(self, output, places, fields=None, fluid=None, threads=0, solid=None):
+    def sample(self, output, places, fields=None, fluid=None, threads=0, solid=None, body=None):
         """Fields of the liquids of an output at places (m, k x 2 or k x 3): a Sample with `wet` and `fields`, as
         "tobiuo sample" finds them. fields: names, of components too ("velocity_x"), without them all; fluid,
-        solid: the name of one."""
-        moment = self[output]
+        solid: the name of one; body: places move and turn with it from where they are at the start, velocities are
+        against it, vectors in its axes."""
+        moment, frames = self[output], None
         points, count = ffi.new("double (**)[3]"), ffi.new("int64_t *")
         call(lib.tobi_results_read_bodies, self._results, output % len(self), points, count)
         solids = array_of(points[0], (count[0], 3))
         free_pointer(points[0])
         scene = sampling.read_scene(self.folder/"resolved.json")
-        return sampling.of_scene(places, scene, moment, solids, fields, fluid, solid, threads)
+        if body is not None:
+            rows = self.table("bodies", of=body)
+            frames = [sampling.find_frame(rows, body, t) for t in (self.times[0], moment.time)]
+        return sampling.of_scene(places, scene, moment, solids, fields, fluid, solid, threads, frames)
+
+    def mean(self, places, fields=None, start=0, until=float("inf"), fluid=None, threads=0, solid=None, body=None):
+        """Means of these fields over the outputs from `start` to `until` (s): Means with `share`, `mean`, `rms` and
+        `reynolds`. Each output counts the same. The others as for sample."""
+        times = self.times
+        chosen = np.flatnonzero((times >= start*(1 - 1e-9)) & (times <= until*(1 + 1e-9)))
+        if len(chosen) == 0:
+            raise ValueError(f"no output from {start} to {until} s; there are some from {times[0]} to {times[-1]} s")
+        return sampling.mean_of((self.sample(int(k), places, fields, fluid, threads, solid, body) for k in chosen),
+                                times[chosen], threads)
 
     def table(self, name="history", of=None):
         """A table of the run, "history", "bodies", "probes" ...: read_table of its file."""

@@ -14,6 +14,27 @@ class Sample:
     fields: dict
 
 
+@dataclass
+class Means:
+    """Over outputs, of each place: share: of the outputs at which it is wet; mean and rms (root mean square of the
+    fluctuations) by field, NaN where it was never wet; reynolds: of the velocity the means of the products of two
+    fluctuations, m2/s2, in the order xx, xy, xz, yy, yz, zz, or None; times: of the outputs, s."""
+    times: np.ndarray
+    share: np.ndarray
+    mean: dict
+    rms: dict
+    reynolds: np.ndarray
+
+
+@dataclass
+class Frame:
+    """Of a body at an output: where it is and how it is turned (columns: its axes), m/s and rad/s."""
+    place: np.ndarray
+    axes: np.ndarray
+    velocity: np.ndarray
+    spin: np.ndarray
+
+
 def _numbers(values, what, columns=None):
     values = np.ascontiguousarray(values, dtype=np.float64)
     if columns is not None:
@@ -73,19 +94,56 @@ def _choose(materials, kind, name):
     return names.index(name) + (len(materials["fluids"]) if kind == "solids" else 0)
 
 
-def _field(moment, name):
-    """A field, or a component of one, "velocity_x"."""
+def _split(moment, name):
+    """A field and the number of its component, None of all: "velocity_x"."""
     component = ffi.new("int *")
     whole = lib.tobi_world_find_field(name.encode(), component, ffi.NULL)
     whole = name if name in moment.fields or whole == ffi.NULL else text_of(whole)
     if whole not in moment.fields:
         raise KeyError(f"{name!r}; fields are: {', '.join(moment.fields)}")
-    values = moment.fields[whole]
-    return values if whole == name else values[:, component[0]]
+    return whole, None if whole == name else component[0]
 
 
-def of_scene(places, scene, moment, bodies, names, fluid=None, solid=None, threads=0):
-    """The liquids of an output, or one of its materials: scene is its resolved.json."""
+def find_frame(table, body, time):
+    """Of the rows of a body in bodies.csv that of an output."""
+    table = {key.split(" [")[0]: values for key, values in table.items()}
+    rows = np.flatnonzero(np.abs(table["time"] - time) <= 1e-9*(1 + abs(time)))
+    if len(rows) == 0:
+        raise ValueError(f"bodies.csv has no row of {body!r} at the output of {time} s")
+    of = {name: np.array([table[f"{name}_{part}"][rows[0]] for part in parts], dtype=np.float64)
+          for name, parts in (("position", "xyz"), ("orientation", "wxyz"), ("velocity", "xyz"), ("angular_velocity", "xyz"))}
+    w, x, y, z = of["orientation"]/np.linalg.norm(of["orientation"])
+    axes = np.array([[1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y)],
+                     [2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x)],
+                     [2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)]])
+    return Frame(of["position"], axes, of["velocity"], of["angular_velocity"])
+
+
+def move(places, start, now):
+    """Places that a body takes along from the start."""
+    return now.place + (_numbers(places, "places", 3) - start.place) @ (now.axes @ start.axes.T).T
+
+
+def turn(sample_, places, start, now):
+    """Values at moved places as the body sees them: velocities against it, all in its axes of the start."""
+    back = now.axes @ start.axes.T
+    for name, values in sample_.fields.items():
+        n = 1 if values.ndim == 1 else values.shape[1]
+        if name == "velocity":
+            values = values - now.velocity - np.cross(now.spin, places - now.place)
+        if n == 3:
+            values = values @ back
+        elif n == 6:                                # xx, yy, zz, xy, yz, zx
+            full = back.T @ values[:, [0, 3, 5, 3, 1, 4, 5, 4, 2]].reshape(-1, 3, 3) @ back
+            values = full.reshape(-1, 9)[:, [0, 4, 8, 1, 5, 2]]
+        elif n == 9:                                # a deformation gradient: its other side is the rest
+            values = (back.T @ values.reshape(-1, 3, 3)).reshape(-1, 9)
+        sample_.fields[name] = values
+
+
+def of_scene(places, scene, moment, bodies, names, fluid=None, solid=None, threads=0, frames=None):
+    """The liquids of an output, or one of its materials: scene is its resolved.json. frames: of a body at the
+    start and now, which takes the places along."""
     materials = {kind: scene.get(kind, []) for kind in ("fluids", "solids")}
     is_liquid = [True]*len(materials["fluids"]) + [s["model"] == "liquid" for s in materials["solids"]]
     if fluid is not None and solid is not None:
@@ -103,11 +161,43 @@ def of_scene(places, scene, moment, bodies, names, fluid=None, solid=None, threa
     spacing = own if chosen[0] >= len(materials["fluids"]) and not isinstance(own, (str, type(None))) else scene["spacing"]
     finer = any((scene["spacing"] if isinstance(b["spacing"], str) else b["spacing"]) < 0.99*spacing
                 for b in scene.get("bodies", []))
-    domain = scene["domain"]
-    return sample(places, moment.positions[ours], {n: _field(moment, n)[ours] for n in names}, spacing,
-                  (domain["min"], domain["max"]), scene["dimension"],
-                  [domain["walls"][a][0] == "periodic" for a in "xyz"],
-                  thin(bodies, spacing) if finer else bodies, threads)
+    domain, parts = scene["domain"], {name: _split(moment, name) for name in names}
+    if frames:
+        places = move(places, *frames)
+    found = sample(places, moment.positions[ours], {whole: moment.fields[whole][ours] for whole, _ in parts.values()},
+                   spacing, (domain["min"], domain["max"]), scene["dimension"],
+                   [domain["walls"][a][0] == "periodic" for a in "xyz"],
+                   thin(bodies, spacing) if finer else bodies, threads)
+    if frames:
+        turn(found, places, *frames)
+    found.fields = {name: found.fields[whole] if part is None else np.ascontiguousarray(found.fields[whole][:, part])
+                    for name, (whole, part) in parts.items()}
+    return found
+
+
+def mean_of(samples, times, threads=0):
+    """Means over samples of the same places and fields, in the order of the outputs."""
+    means, count = {}, 0
+    for found in samples:
+        count = len(found.wet)
+        marks = ffi.from_buffer("uint8_t[]", found.wet.astype(np.uint8))
+        for name, values in found.fields.items():
+            values = np.ascontiguousarray(values, dtype=np.float64)
+            if name not in means:
+                out = ffi.new("tobi_sample_mean **")
+                n = 1 if values.ndim == 1 else values.shape[1]
+                call(lib.tobi_sample_mean_create, count, n, threads, out)
+                means[name] = ffi.gc(out[0], lib.tobi_sample_mean_free), values.shape[1:], n
+            call(lib.tobi_sample_mean_add, means[name][0], marks, ffi.from_buffer("double[]", values))
+    out = Means(np.asarray(times), np.zeros(count), {}, {}, None)
+    for name, (mean, shape, n) in means.items():
+        arrays = [np.zeros((count,) + shape), np.zeros((count,) + shape), np.zeros((count, n*(n + 1)//2))]
+        call(lib.tobi_sample_mean_read, mean, *[ffi.from_buffer("double[]", a, require_writable=True)
+                                                for a in (out.share, *arrays)])
+        out.mean[name], out.rms[name] = arrays[:2]
+        if name == "velocity" and n == 3:
+            out.reynolds = arrays[2]
+    return out
 
 
 def read_scene(path):

@@ -48,6 +48,27 @@ static tobi_status take_fields(tobi_run *run, tobi_set of, tobi_point_set *set, 
     return TOBI_OK;
 }
 
+/* Files have no particles of bodies that are absent: what reads them has no need to know. */
+static void drop_absent(const tobi_world *w, tobi_point_set *set)
+{
+    int64_t from = 0, to = 0;
+    for (int k = 0; k < w->sim.body_count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        const size_t n = (size_t)b->particle_count;
+        const int moves = !b->is_absent && to != from;
+        if (moves) memmove(set->position + to, set->position + from, n*sizeof *set->position);
+        for (int f = 0; moves && f < set->arrays; f++) {
+            const tobi_vtk_array *a = &set->array[f];
+            const size_t each = tobi_type_size(a->type)*(size_t)a->components;
+            char *data = (char *)a->data;
+            memmove(data + (size_t)to*each, data + (size_t)from*each, n*each);
+        }
+        from += b->particle_count;
+        if (!b->is_absent) to += b->particle_count;
+    }
+    set->count = to;
+}
+
 static tobi_status take_particles(tobi_run *run, tobi_set of, tobi_point_set *set, tobi_error *err)
 {
     int64_t n = set->count = tobi_world_count(run->world, of);
@@ -55,6 +76,7 @@ static tobi_status take_particles(tobi_run *run, tobi_set of, tobi_point_set *se
     double *buffer = malloc((size_t)n * 9 * sizeof *buffer + 1);
     tobi_status status = set->position && buffer ? take_fields(run, of, set, buffer, err) : fail_memory(err);
     free(buffer);
+    if (status == TOBI_OK && of == TOBI_BODIES) drop_absent(run->world, set);
     return status;
 }
 

@@ -23,6 +23,7 @@ except ImportError as problem:
     print("not there:", problem)
     sys.exit(77)
 import tobiuo  # noqa: E402
+from tobiuo import sampling  # noqa: E402
 
 POOL = {
     "dimension": 2, "domain": {"min": [0, 0], "max": [0.4, 0.3]}, "spacing": 0.01, "end_time": 0.1, "threads": 1,
@@ -98,6 +99,57 @@ class Module(unittest.TestCase):
             results.sample(0, places, fluid="oil")
         with self.assertRaisesRegex(ValueError, "places"):
             results.sample(0, [1, 2])
+
+    def test_means_and_frames_are_those_of_the_program(self):
+        vane = {"name": "vane", "box": {"min": [0.15, 0.06], "max": [0.19, 0.1]},
+                "motion": {"rotation": {"centre": [0.2, 0.06], "rate": 200}}}
+        scene = with_bodies(vane, output={"interval": 0.02})
+        pathlib.Path("vane.json").write_text(json.dumps(scene), encoding="utf-8")
+        subprocess.run([program, "run", "vane.json", "--out", "vane", "--quiet"], check=True)
+        results = tobiuo.Results("vane")
+
+        def told(table, name):
+            return np.array([float(text) if text else np.nan for text in table[name]])
+
+        for body in (None, "vane"):
+            subprocess.run([program, "sample", "vane", "--line", "0.12,0.03 to 0.2,0.2", "--count", "21", "--from",
+                            "0.04", "--until", "0.08", "--mean", "--fields", "velocity,pressure"] +
+                           (["--with", body] if body else []), check=True, capture_output=True)
+            table = tobiuo.read_table("vane/sample/line_mean.csv")
+            places = np.stack([table["x [m]"], table["y [m]"]], 1)
+            found = results.mean(places, ["velocity", "pressure"], 0.04, 0.08, body=body)
+            np.testing.assert_allclose(found.times, [0.04, 0.06, 0.08])
+            np.testing.assert_allclose(found.share, table["wet_share"], atol=1e-8)
+            self.assertTrue(0.2 < found.share.mean() < 1)
+            for a, axis in enumerate("xyz"):
+                for kind in ("mean", "rms"):
+                    np.testing.assert_allclose(getattr(found, kind)["velocity"][:, a],
+                                               told(table, f"{kind}_velocity_{axis} [m/s]"), rtol=1e-7, atol=1e-9)
+            np.testing.assert_allclose(found.mean["pressure"], told(table, "mean_pressure [Pa]"), rtol=1e-8)
+            for k, pair in enumerate(("xx", "xy", "xz", "yy", "yz", "zz")):
+                np.testing.assert_allclose(found.reynolds[:, k], told(table, f"reynolds_{pair} [m2/s2]"), rtol=1e-6,
+                                           atol=1e-9)
+        rows = tobiuo.read_table("vane/sample/line.csv")
+        at = told(rows, "time [s]") == 0.04
+        now = results.sample(2, places, "velocity_y", body="vane")
+        np.testing.assert_allclose(now.fields["velocity_y"], told(rows, "velocity_y [m/s]")[at], rtol=1e-7, atol=1e-9)
+        self.assertIsNone(results.mean(places, "pressure", start=0.1).reynolds)
+        with self.assertRaisesRegex(ValueError, "no output from 0.03 to 0.035 s; there are some from 0.0 to 0.1 s"):
+            results.mean(places, start=0.03, until=0.035)
+        with self.assertRaisesRegex(KeyError, "boat.*vane"):
+            results.sample(0, places, body="boat")
+
+    def test_tensors_turn_with_a_body(self):
+        c, s = np.cos(0.7), np.sin(0.7)
+        axes = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+        zero = np.zeros(3)
+        start, now = (sampling.Frame(zero, a, zero, zero) for a in (np.eye(3), axes))
+        stress = np.array([[1., 2, 3, 4, 5, 6]])
+        own = axes.T @ np.array([[1, 4, 6], [4, 2, 5], [6, 5, 3]]) @ axes
+        found = tobiuo.Sample(np.ones(1, bool), {"stress": stress, "gradient": np.arange(9.).reshape(1, 9)})
+        sampling.turn(found, np.zeros((1, 3)), start, now)
+        np.testing.assert_allclose(found.fields["stress"][0], own[[0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]])
+        np.testing.assert_allclose(found.fields["gradient"].reshape(3, 3), axes.T @ np.arange(9.).reshape(3, 3))
 
     def test_solids_at_places_are_those_of_the_program(self):
         def box(low, high):

@@ -103,6 +103,24 @@ assert abs(float(row["pressure [Pa]"]) - 9810*0.15) < 0.03*3924, row
 assert abs(float(row["velocity_x [m/s]"]) + 2) < 0.02 and abs(float(row["velocity_y [m/s]"]) - 0.85) < 0.02, row
 END2
 
+# A gate that is taken away dries nothing any more: just below the surface of what has filled its place.
+cat > gate.json <<'END2'
+{ "dimension": 2, "method": "isph", "domain": {"min": [0, 0], "max": [0.4, 0.3]}, "spacing": 0.01, "end_time": 0.3,
+  "fluids": [{"name": "water", "fill": [{"box": {"min": [0, 0], "max": [0.19, 0.1]}},
+                                        {"box": {"min": [0.21, 0], "max": [0.4, 0.1]}}]}],
+  "bodies": [{"name": "post", "box": {"min": [0.05, 0], "max": [0.07, 0.05]}},
+             {"name": "gate", "box": {"min": [0.19, 0], "max": [0.21, 0.3]}, "absent": {"from": 0.04, "until": 0.25}},
+             {"name": "block", "box": {"min": [0.3, 0], "max": [0.36, 0.04]}}],
+  "output": {"interval": 0.1} }
+END2
+"$program" run gate.json --out gate --quiet 2> err.txt
+expect 0 "" sample gate --line "0.2,0.02 to 0.2,0.07" --count 6 --fields density
+check "an absent body dries nothing" test "$(awk -F, 'NR > 1 { printf "%g %s;", $1, $7 }' gate/sample/line.csv)" = \
+    "$(for at in "0 0" "0.1 1" "0.2 1" "0.3 0"; do for _ in 1 2 3 4 5 6; do printf '%s;' "$at"; done; done)"
+vtk "it has no particles in the files" gate/bodies/bodies_000001.vtu points=34 'ranges={"object_id": [1, 3]}' \
+    'sums={"object_id": 1675}'
+vtk "before and after it has" gate/bodies/bodies_000003.vtu points=94
+
 # Two liquids and a solid, each by its name; 3-D.
 cat > three.json <<'END2'
 { "domain": {"min": [0, 0, 0], "max": [0.6, 0.2, 0.4]}, "spacing": 0.02, "end_time": 0.001, "gravity": [0, 0, 0],
