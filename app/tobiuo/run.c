@@ -124,8 +124,8 @@ static int record(tobi_scene *scene, tobi_world *world, const run_options *o, co
                         .quiet = o->quiet };
     int code = o->window ? drive_with_window(world, run, &d, scene, o->keys) : drive(world, run, &d);
     if (waits && code != 0 && code != EXIT_UNWRITTEN)
-        fprintf(stderr, "tobiuo: note: its pictures have waited for the foam; both, now: tobiuo foam %s\n",
-                shell_word(dir, quoted));
+        fprintf(stderr, tr("tobiuo: note: its pictures have waited for the foam; both, now: tobiuo foam "
+                "%s\n"), shell_word(dir, quoted));
     tobi_run_free(run);
     return code;
 }

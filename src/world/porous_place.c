@@ -148,8 +148,8 @@ static tobi_status check_crossed(const tobi_porous *z, const tobi_porous *other,
     const tobi_crossed a = cross(z, other), b = cross(other, z);
     const double common = tobi_polygon_crossed(&a, &b);
     if (common <= SLIVER*fmin(z->extent, other->extent)) return TOBI_OK;
-    REFUSE(TOBI_INVALID, key, "porous zone '%s' overlaps '%s' by %.3g m3: allowed are zones that touch, and "
-           "slivers up to %g of the smaller one", name, other->name, common, SLIVER);
+    REFUSE(TOBI_INVALID, key, tr("porous zone '%s' overlaps '%s' by %.3g m3: allowed are zones that touch, "
+           "and slivers up to %g of the smaller one"), name, other->name, common, SLIVER);
 }
 
 static tobi_status check_overlap(const tobi_porous *z, const tobi_porous *other, const char *name,

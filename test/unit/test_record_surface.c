@@ -42,19 +42,14 @@ static void test_files(void **state)
     assert_int_equal(system(command), 0);
 }
 
-/* A solid in two pieces has two surfaces, with numbers of their own. */
-static void test_pieces(void **state)
+/* A solid in two pieces. */
+static tobi_world *make_cubes(void)
 {
-    (void)state;
-    char dir[] = "/tmp/tobiuo_pieces_XXXXXX", path[80], command[80];
     tobi_error err = { 0 };
     tobi_world *world = NULL;
-    tobi_run *run = NULL;
     tobi_world_def w = tobi_default_world_def();
     tobi_solid_def solid = tobi_default_solid_def();
     tobi_fill_def fill[2] = { tobi_default_fill_def(), tobi_default_fill_def() };
-    tobi_output_def output = make_output();
-    assert_non_null(mkdtemp(dir));
     w.method = "mlsmpm", w.spacing = 0.05, w.threads = 1;
     for (int a = 0; a < 3; a++) {
         w.domain_min[a] = 0, w.domain_max[a] = 2;
@@ -64,9 +59,23 @@ static void test_pieces(void **state)
         }
     }
     solid.name = "cubes", solid.youngs_modulus = 1e5;
+    if (tobi_world_create(&w, NULL, &world, &err) || tobi_world_add_solid(world, &solid, fill, 2, &err))
+        fail_msg("%s", err.text);
+    return world;
+}
+
+/* They are two surfaces, with numbers of their own. */
+static void test_pieces(void **state)
+{
+    (void)state;
+    char dir[] = "/tmp/tobiuo_pieces_XXXXXX", path[80], command[80];
+    tobi_error err = { 0 };
+    tobi_run *run = NULL;
+    tobi_world *world = make_cubes();
+    tobi_output_def output = make_output();
+    assert_non_null(mkdtemp(dir));
     output.surface = 1, output.compression = TOBI_ASCII;
-    if (tobi_world_create(&w, NULL, &world, &err) || tobi_world_add_solid(world, &solid, fill, 2, &err) ||
-        tobi_run_create(world, &output, dir, 1, NULL, &run, &err)) fail_msg("%s", err.text);
+    if (tobi_run_create(world, &output, dir, 1, NULL, &run, &err)) fail_msg("%s", err.text);
     tobi_run_free(run);
     tobi_world_destroy(world);
     snprintf(path, sizeof path, "%s/surface/surface_000000.vtp", dir);
@@ -110,6 +119,17 @@ static void test_mistakes(void **state)
     output.surface_fields = "velocity";
     output.surface_cell = 0.01;
     expect_refused(world, &output, "surface.cell");
+    tobi_world_destroy(world);
+    output = make_output();
+    output.surface = 1;
+    output.surface_fields = "position,position_x,position_y,position_z,velocity,velocity_x,velocity_y,"
+        "velocity_z,deformation_gradient,deformation_gradient_xx,deformation_gradient_xy,"
+        "deformation_gradient_xz,deformation_gradient_yx,deformation_gradient_yy,deformation_gradient_yz,"
+        "deformation_gradient_zx,deformation_gradient_zy,deformation_gradient_zz,stress,stress_xx,stress_yy,"
+        "stress_zz,stress_xy,stress_yz,stress_zx,stress_xz,density,pressure,object_id,particle_id,von_mises,"
+        "material,part,piece";
+    world = make_cubes();
+    expect_refused(world, &output, "output.surface.fields: more than 32");
     tobi_world_destroy(world);
     tobi_world_def flat = tobi_default_world_def();
     tobi_error err = { 0 };
