@@ -3,6 +3,7 @@
    of which files could not be written, 130 after Ctrl-C.
  */
 #pragma once
+#include "language.h"
 #include "energy.h"
 #include "tobiuo/drawing.h"
 #include "tobiuo/run.h"
@@ -93,6 +94,9 @@ int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* A scene's mistakes, or the error's text; frees the report. Returns EXIT_ERROR. */
 int complain_scene(tobi_report *report, const tobi_error *err);
 
+/* The head of a line of a list: the text, filled up with blanks as wide as a terminal shows it. */
+enum { LABEL = 17 };
+void print_label(const char *text);
 /* Prints the world's notes on its meshes, a line each after `head`. */
 void print_notes(const tobi_world *world, FILE *file, const char *head);
 

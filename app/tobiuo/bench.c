@@ -28,7 +28,7 @@ static const struct argp_option options[] = {
 static int parse_count(struct argp_state *state, const char *option, const char *text)
 {
     double value = parse_positive(state, option, text);
-    if (value != (int)value) argp_error(state, "%s: '%s' is not a whole number", option, text);
+    if (value != (int)value) argp_error(state, tr("%s: '%s' is not a whole number"), option, text);
     return (int)value;
 }
 
@@ -48,7 +48,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_METHOD: o->method = value; break;
     case KEY_CSV: o->csv = value; break;
     case ARGP_KEY_ARG:
-        if (o->which) argp_error(state, "one CASE only");
+        if (o->which) argp_error(state, tr("one CASE only"));
         o->which = value;
         break;
     default: return ARGP_ERR_UNKNOWN;

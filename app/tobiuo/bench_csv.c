@@ -11,7 +11,7 @@ int bench_write(const bench_options *o, const char *name, const bench_run *run)
     const bench_result *r = &run->result;
     if (!o->csv) return 0;
     FILE *file = fopen(o->csv, "a");
-    if (!file) return complain("%s: %s", o->csv, strerror(errno));
+    if (!file) return complain("%s: %s", o->csv, tr(strerror(errno)));
     int failed = fseek(file, 0, SEEK_END) != 0;
     if (!failed && ftell(file) == 0)
         failed = fprintf(file, "case,version,processor,cores,threads,isa,load,particles,steps,step_ms,"
@@ -24,5 +24,5 @@ int bench_write(const bench_options *o, const char *name, const bench_run *run)
                          r->density_iterations, r->divergence_iterations,
                          (unsigned long long)tobi_world_hash(run->world)) < 0;
     failed |= fclose(file) != 0;
-    return failed ? complain("%s: %s", o->csv, strerror(errno)) : 0;
+    return failed ? complain("%s: %s", o->csv, tr(strerror(errno))) : 0;
 }

@@ -1,5 +1,6 @@
 /* tobiuo check SCENE: what a run would be, from its first steps at most. */
 #include "app.h"
+#include "language.h"
 #include "tobiuo/matter.h"
 #include "tobiuo/params.h"
 #include <math.h>
@@ -36,9 +37,11 @@ static void print_solids(const tobi_world *world, int dimension)
 {
     tobi_solid_info solid;
     for (int k = 0; tobi_world_solid(world, k, &solid) == TOBI_OK; k++) {
-        printf("solid            %s: %lld particles, %.4g %s, %.4g kg/m3", solid.name,
-               (long long)solid.particles, solid.mass, dimension == 3 ? "kg" : "kg/m", solid.density);
-        printf(solid.time_step < 1.0 ? ", time step at most %.3g s\n" : "\n", solid.time_step);
+        print_label(tr("solid"));
+        printf(tr("%s: %lld particles, %.4g %s, %.4g kg/m3"), solid.name, (long long)solid.particles,
+               solid.mass, dimension == 3 ? "kg" : "kg/m", solid.density);
+        if (solid.time_step < 1.0) printf(tr(", time step at most %.3g s"), solid.time_step);
+        printf("\n");
     }
 }
 
@@ -48,10 +51,10 @@ static void print_flotation(const tobi_body_matter *m)
     static const char *const axes[] = { "x", "y", "z" };
     const char *and = "";
     if (!(m->draught > 0.0)) return;
-    printf("; floats with a draught of %.4g m, GM ", m->draught);
+    printf(tr("; floats with a draught of %.4g m, GM "), m->draught);
     for (int a = 0; a < 3; a++) {
         if (m->metacentre[a] == 0.0) continue;
-        printf("%s%.4g m about %s", and, m->metacentre[a], axes[a]);
+        printf(tr("%s%.4g m about %s"), and, m->metacentre[a], axes[a]);
         and = ", ";
     }
 }
@@ -65,20 +68,23 @@ static void print_bodies(const tobi_world *world, int dimension)
     int count = 0;
     for (int k = 0; tobi_world_body_matter(world, k, &m) == TOBI_OK; k++) {
         if (m.dynamics == TOBI_PRESCRIBED || ++count > LISTED) continue;
-        printf("body             %s: %.4g kg%s, %.4g m3%s", tobi_world_body_name(world, k), m.mass, each,
-               m.volume, each);
-        if (m.liquid > 0.0) printf(", %.4g of the liquid's density", m.mass / m.volume / m.liquid);
-        printf(", centre of mass %.4g %.4g %.4g m", m.centre[0], m.centre[1], m.centre[2]);
+        print_label(tr("body"));
+        printf("%s: %.4g kg%s, %.4g m3%s", tobi_world_body_name(world, k), m.mass, each, m.volume, each);
+        if (m.liquid > 0.0) printf(tr(", %.4g of the liquid's density"), m.mass / m.volume / m.liquid);
+        printf(tr(", centre of mass %.4g %.4g %.4g m"), m.centre[0], m.centre[1], m.centre[2]);
         if (dimension == 3)
-            printf(", inertia %.4g %.4g %.4g kg m2", m.inertia[0], m.inertia[4], m.inertia[8]);
-        else printf(", inertia %.4g kg m2/m", m.inertia[8]);
+            printf(tr(", inertia %.4g %.4g %.4g kg m2"), m.inertia[0], m.inertia[4], m.inertia[8]);
+        else printf(tr(", inertia %.4g kg m2/m"), m.inertia[8]);
         print_flotation(&m);
         if (m.solids > 0)
-            printf("; without the %d solid%s that it holds, so no draught", m.solids,
+            printf(tr("; without the %d solid%s that it holds, so no draught"), m.solids,
                    m.solids > 1 ? "s" : "");
         printf("\n");
     }
-    if (count > LISTED) printf("body             and %d more that move by forces\n", count - LISTED);
+    if (count > LISTED) {
+        print_label(tr("body"));
+        printf(tr("and %d more that move by forces\n"), count - LISTED);
+    }
 }
 
 /* What porous zones resist, and how large they are. */
@@ -87,11 +93,12 @@ static void print_zones(const tobi_world *world, int dimension)
     tobi_porous_info z;
     const char *name;
     for (int k = 0; (name = tobi_world_porous(world, k, &z)); k++) {
-        printf("porous zone      %s: %.4g 1/s, %.4g 1/m", name, z.linear, z.quadratic);
+        print_label(tr("porous zone"));
+        printf("%s: %.4g 1/s, %.4g 1/m", name, z.linear, z.quadratic);
         if (z.direction[0] != 0.0 || z.direction[1] != 0.0 || z.direction[2] != 0.0)
-            printf(" %s (%.3g, %.3g, %.3g)", z.radial ? "away from" : z.along ? "along" : "across",
-                   z.direction[0], z.direction[1], z.direction[2]);
-        printf(", in %.4g %s\n", z.extent, dimension == 2 ? "m2" : "m3");
+            printf(z.radial ? tr(" away from (%.3g, %.3g, %.3g)") : z.along ? tr(" along (%.3g, %.3g, %.3g)")
+                   : tr(" across (%.3g, %.3g, %.3g)"), z.direction[0], z.direction[1], z.direction[2]);
+        printf(tr(", in %.4g %s\n"), z.extent, dimension == 2 ? "m2" : "m3");
     }
 }
 
@@ -99,9 +106,11 @@ static void print_zones(const tobi_world *world, int dimension)
 static void print_scalars(const tobi_world *world)
 {
     tobi_scalar_info s;
-    for (int k = 0; tobi_world_scalar(world, k, &s); k++)
-        printf("%-16s %.4g to %.4g%s, mean %.4g\n", s.field, s.least, s.most,
-               strcmp(s.unit, "1") == 0 ? "" : " degC", s.mean);
+    for (int k = 0; tobi_world_scalar(world, k, &s); k++) {
+        print_label(tr(s.field));
+        printf(tr("%.4g to %.4g%s, mean %.4g\n"), s.least, s.most, strcmp(s.unit, "1") == 0 ? "" : " degC",
+               s.mean);
+    }
 }
 
 /* The first steps of a run, and what they tell of all. */
@@ -140,37 +149,43 @@ static int is_range(const trial *t) { return t->most > 1.3 * t->least; }
 static void print_step(const tobi_world_def *d, const tobi_world *world, const trial *t)
 {
     const double automatic = guess_step(d, tobi_world_stable_step(world));
-    if (!(t->least > 0.0)) printf("time step        adaptive, to %g s", d->end_time);
+    print_label(tr("time step"));
+    if (!(t->least > 0.0)) printf(tr("adaptive, to %g s"), d->end_time);
     else if (is_range(t))
-        printf("time step        %.3g to %.3g s: %.9g to %.9g steps to %g s", t->least, t->most,
+        printf(tr("%.3g to %.3g s: %.9g to %.9g steps to %g s"), t->least, t->most,
                ceil(d->end_time / t->most), ceil(d->end_time / t->least), d->end_time);
     else
-        printf("time step        %s%.3g s, about %.9g steps to %g s",
-               d->time_step > 0.0 ? "fixed, " : "about ", t->least, ceil(d->end_time / t->least),
+        printf(d->time_step > 0.0 ? tr("fixed, %.3g s, about %.9g steps to %g s")
+               : tr("about %.3g s, about %.9g steps to %g s"), t->least, ceil(d->end_time / t->least),
                d->end_time);
     if (d->time_step > 0.0 && t->least < 0.7 * automatic)
-        printf(": up to %.2g times the steps and the time of \"adaptive\"", automatic / t->least);
+        printf(tr(": up to %.2g times the steps and the time of \"adaptive\""), automatic / t->least);
     printf("\n");
 }
 
 static void print_scene(const tobi_scene *scene, const tobi_world *world, const trial *t)
 {
     const tobi_world_def *d = tobi_scene_world_def(scene);
-    printf("scene            %s (%s, %d-D)\n", tobi_scene_name(scene), d->method, d->dimension);
+    print_label(tr("scene"));
+    printf(tr("%s (%s, %d-D)\n"), tobi_scene_name(scene), d->method, d->dimension);
     const double *low = d->domain_min, *high = d->domain_max;
-    if (d->dimension == 2) printf("domain           %g %g  to  %g %g m\n", low[0], low[1], high[0], high[1]);
-    else
-        printf("domain           %g %g %g  to  %g %g %g m\n", low[0], low[1], low[2], high[0], high[1],
-               high[2]);
-    printf("spacing          %g m\n", d->spacing);
+    print_label(tr("domain"));
+    if (d->dimension == 2) printf(tr("%g %g  to  %g %g m\n"), low[0], low[1], high[0], high[1]);
+    else printf(tr("%g %g %g  to  %g %g %g m\n"), low[0], low[1], low[2], high[0], high[1], high[2]);
+    print_label(tr("spacing"));
+    printf("%g m\n", d->spacing);
     print_step(d, world, t);
     print_solids(world, d->dimension);
     print_bodies(world, d->dimension);
     print_zones(world, d->dimension);
     print_scalars(world);
-    print_notes(world, stdout, "note             ");
+    const char *note;
+    for (int k = 0; (note = tobi_world_note(world, k)); k++) {
+        print_label(tr("note"));
+        printf("%s\n", note);
+    }
     if (tobi_scene_import_table(scene))
-        printf("\nA scene of %s. What became of its keys:\n\n%s\n", tobi_scene_import_program(scene),
+        printf(tr("\nA scene of %s. What became of its keys:\n\n%s\n"), tobi_scene_import_program(scene),
                tobi_scene_import_table(scene));
 }
 
@@ -179,9 +194,13 @@ static void print_size(const tobi_scene *scene, const tobi_run_size *size)
     char bytes[32], *dir = results_path(scene, NULL), *objection = dir ? size_objection(size, dir) : NULL;
     const double every = tobi_scene_output_def(scene)->interval;
     const double left = remainder(tobi_scene_world_def(scene)->end_time, every);
-    printf("outputs          %lld, every %g s%s: about %s in %.7g files\n", (long long)size->outputs, every,
-           fabs(left) > 1e-9*every ? " and at the end" : "", bytes_text(size->bytes, bytes), size->files);
-    if (objection) printf("note             %s\n", objection);
+    print_label(tr("outputs"));
+    printf(tr("%lld, every %g s%s: about %s in %.7g files\n"), (long long)size->outputs, every,
+           fabs(left) > 1e-9*every ? tr(" and at the end") : "", bytes_text(size->bytes, bytes), size->files);
+    if (objection) {
+        print_label(tr("note"));
+        printf("%s\n", objection);
+    }
     free(objection);
     free(dir);
 }
@@ -195,9 +214,10 @@ static int print_time(const tobi_scene *scene, const trial *t)
     duration_text(t->wall * end / t->most, least);
     duration_text(t->wall * end / t->least, most);
     const int differ = is_range(t) && strcmp(least, most) != 0;
-    printf("wall clock       about %s%s%s for the steps on this machine, if as fast as the first %d%s\n",
-           differ ? least : "", differ ? " to " : "", most, t->steps,
-           tobi_scene_output_def(scene)->frames ? "; pictures take more" : "");
+    print_label(tr("wall clock"));
+    printf(tr("about %s%s%s for the steps on this machine, if as fast as the first %d%s\n"),
+           differ ? least : "", differ ? tr(" to ") : "", most, t->steps,
+           tobi_scene_output_def(scene)->frames ? tr("; pictures take more") : "");
     return 0;
 }
 
@@ -230,7 +250,7 @@ static double all_bytes(const cost *c, const tobi_world *world)
 
 static double machine_bytes(void) { return (double)sysconf(_SC_PHYS_PAGES)*(double)sysconf(_SC_PAGESIZE); }
 
-static const char too_many[] = "more particles than this machine has memory for";
+static const char too_many[] = TEXT("more particles than this machine has memory for");
 
 tobi_status try_scene(tobi_scene *scene, tobi_error *err)
 {
@@ -241,7 +261,7 @@ tobi_status try_scene(tobi_scene *scene, tobi_error *err)
     if (status != TOBI_OK) tobi_scene_place_error(scene, err);
     if (status == TOBI_OK && all_bytes(&c, world) > machine_bytes()) {
         status = TOBI_NO_MEMORY;
-        snprintf(err->text, sizeof err->text, "%s", too_many);
+        snprintf(err->text, sizeof err->text, "%s", tr(too_many));
     }
     tobi_world_destroy(world);
     return status;
@@ -251,9 +271,9 @@ tobi_status try_scene(tobi_scene *scene, tobi_error *err)
 static const char *name_particles(const tobi_scene *scene, const tobi_world *world)
 {
     tobi_method_info method = { 0 };
-    if (tobi_world_solid_count(world) == 0) return "fluid particles";
+    if (tobi_world_solid_count(world) == 0) return tr("fluid particles");
     tobi_method_describe(tobi_scene_world_def(scene)->method, &method);
-    return method.solids ? "solid particles" : "particles";
+    return method.solids ? tr("solid particles") : tr("particles");
 }
 
 static int check_world(tobi_scene *scene)
@@ -272,14 +292,21 @@ static int check_world(tobi_scene *scene)
     try_steps(tobi_scene_world_def(scene), world, c.fluid <= START_LIMIT, &t);
     print_scene(scene, world, &t);
     const double machine = machine_bytes(), needed = all_bytes(&c, world);
-    if (c.fluid > 0)
-        printf("%-17s%lld\n", name_particles(scene, world), (long long)c.fluid);
-    printf("body particles   %lld\n", (long long)c.bodies);
-    printf("memory           %.1f MB of %.0f MB\n", needed * 1e-6, machine * 1e-6);
+    if (c.fluid > 0) {
+        print_label(name_particles(scene, world));
+        printf("%lld\n", (long long)c.fluid);
+    }
+    print_label(tr("body particles"));
+    printf("%lld\n", (long long)c.bodies);
+    print_label(tr("memory"));
+    printf(tr("%.1f MB of %.0f MB\n"), needed * 1e-6, machine * 1e-6);
     print_size(scene, &c.size);
-    int code = needed > machine ? complain("%s", too_many) : 0;
+    int code = needed > machine ? complain("%s", tr(too_many)) : 0;
     if (c.fluid <= START_LIMIT) code |= print_time(scene, &t);
-    else printf("wall clock       not measured with more than %d particles\n", START_LIMIT);
+    else {
+        print_label(tr("wall clock"));
+        printf(tr("not measured with more than %d particles\n"), START_LIMIT);
+    }
     tobi_world_destroy(world);
     return code;
 }

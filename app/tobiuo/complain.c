@@ -1,5 +1,6 @@
 /* Messages on stderr. */
 #include "app.h"
+#include "language.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +12,7 @@ int complain(const char *format, ...)
     va_list args;
     fprintf(stderr, "%stobiuo:%s ", colour(stderr, RED), colour(stderr, PLAIN));
     va_start(args, format);
-    vfprintf(stderr, format, args);
+    vfprintf(stderr, tr(format), args);
     va_end(args);
     fputc('\n', stderr);
     return EXIT_ERROR;
@@ -21,6 +22,14 @@ void print_notes(const tobi_world *world, FILE *file, const char *head)
 {
     const char *text;
     for (int k = 0; (text = tobi_world_note(world, k)); k++) fprintf(file, "%s%s\n", head, text);
+}
+
+void print_label(const char *text)
+{
+    int columns = 0;
+    for (const unsigned char *c = (const unsigned char *)text; *c; c++)     /* letters of Japanese are wide */
+        columns += *c >= 0xe3 ? 2 : *c < 0x80 || *c >= 0xc0;
+    printf("%s%*s", text, columns < LABEL ? LABEL - columns : 1, "");
 }
 
 int complain_scene(tobi_report *report, const tobi_error *err)
@@ -42,7 +51,7 @@ int complain_run(const char *dir, const char *what)
         return complain("%s is a sweep: its runs are the folders in it, sweep.txt and sweep.svg compare them",
                         dir);
     char *near = near_run(dir);
-    complain("%s: %s%s%s%s", dir, what, near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
+    complain("%s: %s%s%s%s", dir, what, near ? tr("; did you mean ") : "", near ? near : "", near ? "?" : "");
     free(near);
     return EXIT_ERROR;
 }

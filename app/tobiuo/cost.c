@@ -40,7 +40,8 @@ char *size_objection(const tobi_run_size *size, const char *dir)
     const double left = free_bytes(dir);
     char bytes[32], room[32], free_text[64] = "", *text = NULL;
     if (size->bytes <= fmin(MOST_BYTES, MOST_OF_DISK * left) && size->files <= MOST_FILES) return NULL;
-    if (isfinite(left)) snprintf(free_text, sizeof free_text, ", and %s are free", bytes_text(left, room));
+    if (isfinite(left)) snprintf(free_text, sizeof free_text, tr(", and %s are free"), bytes_text(left,
+                                                                                                  room));
     const int length = asprintf(&text, "%lld outputs take about %s in %.7g files%s; make spacing or "
                                 "output.interval larger, output.fields fewer or output.compression zlib, "
                                 "or run with --force", (long long)size->outputs,

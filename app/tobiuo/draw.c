@@ -36,18 +36,18 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case 'o':
         if (!is_png(value))
-            argp_error(state, "--out: '%s' is no picture that can be made: its name ends in .png", value);
+            argp_error(state, tr("--out: '%s' is no picture that can be made: its name ends in .png"), value);
         o->out = value;
         break;
     case KEY_OUTPUT:
         o->output = strtoll(value, &end, 10);
         if (end == value || *end || o->output < 0)
-            argp_error(state, "--output: '%s' is not a number from 0 on", value);
+            argp_error(state, tr("--output: '%s' is not a number from 0 on"), value);
         break;
     case KEY_TIME:
         o->time = strtod(value, &end);
         if (end == value || *end || !(o->time >= 0))
-            argp_error(state, "--time: '%s' is not a number from 0 on", value);
+            argp_error(state, tr("--time: '%s' is not a number from 0 on"), value);
         break;
     case KEY_VIEW: o->view = value; break;
     case KEY_VALUE: overrides_add(&o->set, "%s", value); break;
@@ -260,7 +260,7 @@ int draw_missing(const char *dir, const char *view, const overrides *set, const 
     if (asprintf(&frames, "%s/frames", folder) < 0) return complain("out of memory");
     int code = open_source(&s, dir, view, set);
     if (code == 0 && mkdir(frames, 0777) != 0 && errno != EEXIST)
-        code = complain("cannot make the folder %s: %s", frames, strerror(errno));
+        code = complain("cannot make the folder %s: %s", frames, tr(strerror(errno)));
     if (code == 0) code = draw_gaps(&s, dir, view, folder);
     free_source(&s);
     free(frames);

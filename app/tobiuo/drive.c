@@ -2,7 +2,6 @@
    sooner, and the checkpoint has the step before. A second one ends the program at once, which costs nothing
    but the time since the last checkpoint. So does one before the first step. */
 #include "app.h"
-#include "language.h"
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>

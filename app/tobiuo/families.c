@@ -2,14 +2,15 @@
    the tank, x along it, y across, z up; a 2-D scene has x and z as its x and y. Drawback: dimensions of
    experiments stand here and in the physics cases alike. */
 #include "family.h"
+#include "language.h"
 #include <math.h>
 #include <string.h>
 
-#define AIR { "air", "kg/m3", 0, 0, 100, "density of the air in the rest of the tank: 1.2; 0: none", 0 }
-#define UNTIL(t) { "until", "s", t, 1e-6, 1e5, "simulated time at which the run ends", 0 }
+#define AIR { "air", "kg/m3", 0, 0, 100, TEXT("density of the air in the rest of the tank: 1.2; 0: none"), 0 }
+#define UNTIL(t) { "until", "s", t, 1e-6, 1e5, TEXT("simulated time at which the run ends"), 0 }
 #define TANK(l, w, h) \
-    LENGTH("length", l, "of the tank, along x"), ACROSS("width", w, "of the tank, along y"), \
-    LENGTH("height", h, "of the tank, along z")
+    LENGTH("length", l, TEXT("of the tank, along x")), ACROSS("width", w, TEXT("of the tank, along y")), \
+    LENGTH("height", h, TEXT("of the tank, along z"))
 
 double chosen(const family_choice *c, const char *option)
 {
@@ -105,13 +106,13 @@ static void put_output(const family_choice *c, FILE *out)
     fprintf(out, "  \"output\": { \"interval\": %.10g }\n}\n", chosen(c, "until")/100);
 }
 
-static const char above[] = "the water is higher than the tank";
-static const char beyond[] = "the water is longer than the tank";
+static const char above[] = TEXT("the water is higher than the tank");
+static const char beyond[] = TEXT("the water is longer than the tank");
 
 /* --- static pressure ----------------------------------------------------------------------- */
 
 static const family_option static_options[] = {
-    SPACING(0.0125), UNTIL(2), TANK(0.2, 0.1, 0.15), LENGTH("depth", 0.1, "of the water"), { 0 } };
+    SPACING(0.0125), UNTIL(2), TANK(0.2, 0.1, 0.15), LENGTH("depth", 0.1, TEXT("of the water")), { 0 } };
 
 static const char *object_static(const family_choice *c)
 {
@@ -135,24 +136,26 @@ static void write_static(const family_choice *c, FILE *out)
 /* --- dam breaks ---------------------------------------------------------------------------- */
 
 #define COLUMN(l, h) \
-    LENGTH("water-length", l, "of the column of water, along x"), \
-    LENGTH("water-height", h, "of the column of water")
+    LENGTH("water-length", l, TEXT("of the column of water, along x")), \
+    LENGTH("water-height", h, TEXT("of the column of water"))
 
 static const family_option dam_options[] = {
     SPACING(0.01), UNTIL(1), TANK(1, 0.15, 0.5), COLUMN(0.3, 0.25), AIR, { 0 } };
 static const family_option lobovsky_options[] = {
-    SPACING(0.015), UNTIL(1.1), LENGTH("water-height", 0.3, "0.3 or 0.6 in the experiment"),
-    LENGTH("height", 0.6, "of the computed air and water"),
-    { "gate-speed", "m/s", 0, 0, 100, "of a gate drawn up at time 0; 0: the water is let go at once", 0 },
+    SPACING(0.015), UNTIL(1.1), LENGTH("water-height", 0.3, TEXT("0.3 or 0.6 in the experiment")),
+    LENGTH("height", 0.6, TEXT("of the computed air and water")),
+    { "gate-speed", "m/s", 0, 0, 100, TEXT("of a gate drawn up at time 0; 0: the water is let go at once"),
+      0 },
     { 0 } };
 static const family_option kamra_options[] = {
-    SPACING(0.015), UNTIL(1), COLUMN(0.2, 0.2), LENGTH("height", 0.6, "of the tank"),
-    { "post", "1", 1, 0, 2, "1: square, 0.05 m wide; 2: round, 0.05 m across; 0: none", 0 }, { 0 } };
+    SPACING(0.015), UNTIL(1), COLUMN(0.2, 0.2), LENGTH("height", 0.6, TEXT("of the tank")),
+    { "post", "1", 1, 0, 2, TEXT("1: square, 0.05 m wide; 2: round, 0.05 m across; 0: none"), 0 }, { 0 } };
 static const family_option impact_options[] = {
     SPACING(0.04), UNTIL(1.5), COLUMN(1.228, 0.55), TANK(3.22, 1, 1),
-    LENGTH("box-length", 0.16, "of the box that is hit, along x"),
-    ACROSS("box-width", 0.4, "of the box, along y"),
-    LENGTH("box-height", 0.16, "of the box"), LENGTH("box-at", 2.4, "where the box begins, along x"), { 0 } };
+    LENGTH("box-length", 0.16, TEXT("of the box that is hit, along x")),
+    ACROSS("box-width", 0.4, TEXT("of the box, along y")),
+    LENGTH("box-height", 0.16, TEXT("of the box")),
+    LENGTH("box-at", 2.4, TEXT("where the box begins, along x")), { 0 } };
 
 static const char *object_dam(const family_choice *c)
 {
@@ -218,7 +221,7 @@ static void write_lobovsky(const family_choice *c, FILE *out)
 static const char *object_kamra(const family_choice *c)
 {
     if (chosen(c, "water-height") > chosen(c, "height")) return above;
-    return chosen(c, "water-length") >= 0.6 ? "the water reaches the post, 0.6 m from the wall" : NULL;
+    return chosen(c, "water-length") >= 0.6 ? TEXT("the water reaches the post, 0.6 m from the wall") : NULL;
 }
 
 static void write_kamra(const family_choice *c, FILE *out)
@@ -249,9 +252,9 @@ static void write_kamra(const family_choice *c, FILE *out)
 static const char *object_impact(const family_choice *c)
 {
     if (chosen(c, "box-at") + chosen(c, "box-length") >= chosen(c, "length"))
-        return "the box does not fit into the tank";
-    if (chosen(c, "box-width") > chosen(c, "width")) return "the box is wider than the tank";
-    if (chosen(c, "water-length") >= chosen(c, "box-at")) return "the water reaches the box";
+        return TEXT("the box does not fit into the tank");
+    if (chosen(c, "box-width") > chosen(c, "width")) return TEXT("the box is wider than the tank");
+    if (chosen(c, "water-length") >= chosen(c, "box-at")) return TEXT("the water reaches the box");
     return object_dam(c);
 }
 
@@ -280,9 +283,9 @@ static void write_impact(const family_choice *c, FILE *out)
 /* --- sloshing ------------------------------------------------------------------------------ */
 
 static const family_option slosh_options[] = {
-    SPACING(0.02), UNTIL(4), TANK(0.9, 0.1, 0.5), LENGTH("depth", 0.2, "of the water"),
-    { "angle", "degrees", 4, -45, 45, "that the end at --length is lowered by, first", 0 },
-    { "period", "s", 0, 0, 1e5, "of its turns, which grow for a fifth of it; 0: tilted at once", 0 },
+    SPACING(0.02), UNTIL(4), TANK(0.9, 0.1, 0.5), LENGTH("depth", 0.2, TEXT("of the water")),
+    { "angle", "degrees", 4, -45, 45, TEXT("that the end at --length is lowered by, first"), 0 },
+    { "period", "s", 0, 0, 1e5, TEXT("of its turns, which grow for a fifth of it; 0: tilted at once"), 0 },
     AIR, { 0 } };
 
 /* The turn to and fro as a frame: the tank stands still, gravity and inertia turn. A positive angle lowers
@@ -317,17 +320,18 @@ static void write_slosh(const family_choice *c, FILE *out)
 /* --- a hose -------------------------------------------------------------------------------- */
 
 static const family_option hose_options[] = {
-    SPACING(0.005), UNTIL(1), TANK(0.06, 0.06, 0.12), LENGTH("depth", 0.015, "of the water at the start"),
-    LENGTH("diameter", 0.02, "of the hose"),
-    { "speed", "m/s", 0.5, 1e-6, 1e3, "of the water in the hose", 0 }, { 0 } };
+    SPACING(0.005), UNTIL(1), TANK(0.06, 0.06, 0.12),
+    LENGTH("depth", 0.015, TEXT("of the water at the start")),
+    LENGTH("diameter", 0.02, TEXT("of the hose")),
+    { "speed", "m/s", 0.5, 1e-6, 1e3, TEXT("of the water in the hose"), 0 }, { 0 } };
 
 static const char *object_hose(const family_choice *c)
 {
     const double width = c->dimension == 2 ? chosen(c, "length") : fmin(chosen(c, "length"), chosen(c,
         "width"));
     if (chosen(c, "depth") > 0.7*chosen(c,
-                                        "height")) return "the glass is full before the hose begins";
-    return chosen(c, "diameter") > width ? "the hose is wider than the glass" : NULL;
+                                        "height")) return TEXT("the glass is full before the hose begins");
+    return chosen(c, "diameter") > width ? TEXT("the hose is wider than the glass") : NULL;
 }
 
 /* The domain is the glass, and holds the end of the hose above it. */
@@ -357,19 +361,20 @@ static void write_hose(const family_choice *c, FILE *out)
 }
 
 static const family families[] = {
-    { "static_pressure", "water at rest in a tank", static_options, 1, object_static, write_static },
-    { "dam_break", "a column of water collapses in a tank", dam_options, 1, object_dam, write_dam },
-    { "lobovsky", "the dam break of Lobovsky et al. (2014), with its sensors", lobovsky_options, 1,
+    { "static_pressure", TEXT("water at rest in a tank"), static_options, 1, object_static, write_static },
+    { "dam_break", TEXT("a column of water collapses in a tank"), dam_options, 1, object_dam, write_dam },
+    { "lobovsky", TEXT("the dam break of Lobovsky et al. (2014), with its sensors"), lobovsky_options, 1,
       object_lobovsky, write_lobovsky },
-    { "kamra", "a dam breaks on a square or round post (Kamra et al. 2019)", kamra_options, 0,
+    { "kamra", TEXT("a dam breaks on a square or round post (Kamra et al. 2019)"), kamra_options, 0,
       object_kamra, write_kamra },
-    { "sloshing", "water swings in a tank that is tilted, at once or to and fro", slosh_options, 1,
+    { "sloshing", TEXT("water swings in a tank that is tilted, at once or to and fro"), slosh_options, 1,
       object_static,
       write_slosh },
-    { "wave_tank", "a piston makes regular waves, which end on a beach, or a solitary one", wave_options, 1,
+    { "wave_tank", TEXT("a piston makes regular waves, which end on a beach, or a solitary one"),
+      wave_options, 1,
       object_wave, write_wave },
-    { "hose", "a hose fills a glass", hose_options, 1, object_hose, write_hose },
-    { "wave_impact", "a dam breaks onto a box (SPHERIC test 2)", impact_options, 1, object_impact,
+    { "hose", TEXT("a hose fills a glass"), hose_options, 1, object_hose, write_hose },
+    { "wave_impact", TEXT("a dam breaks onto a box (SPHERIC test 2)"), impact_options, 1, object_impact,
       write_impact },
 };
 

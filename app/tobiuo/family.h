@@ -1,5 +1,6 @@
 /* Families of scenes that `tobiuo new` writes: their options, and the writers. */
 #pragma once
+#include "language.h"
 #include <stdio.h>
 
 /* A number that a family takes; a length in m if unit says so. */
@@ -42,7 +43,7 @@ double chosen(const family_choice *c, const char *option);
 /* new.c: 1 if the option was given, its default or not. */
 int is_given(const family_choice *c, const char *option);
 
-#define SPACING(d) { "spacing", "m", d, 1e-7, 1e5, "particle spacing", 0 }
+#define SPACING(d) { "spacing", "m", d, 1e-7, 1e5, TEXT("particle spacing"), 0 }
 #define LENGTH(name_, def_, doc_) { name_, "m", def_, 1e-6, 1e5, doc_, 0 }
 #define ACROSS(name_, def_, doc_) { name_, "m", def_, 1e-6, 1e5, doc_, 1 }
 

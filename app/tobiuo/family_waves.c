@@ -1,6 +1,7 @@
 /* The wave tank that `tobiuo new` writes: piston, water, a beach a wave long, level sensors. Dimensions that
    are left out follow from the length of the waves. Drawback: that length is by linear theory. */
 #include "family.h"
+#include "language.h"
 #include <math.h>
 
 #define PI 3.14159265358979323846
@@ -14,16 +15,18 @@ static const double REACH = 3.8;
 
 const family_option wave_options[] = {
     SPACING(0.02),
-    { "until", "s", 0, 1e-6, 1e5, "end of the run; 0: six periods after waves reach the beach", 0 },
-    LENGTH("length", 0, "of the tank, along x; 0: two wave lengths and the beach"),
-    ACROSS("width", 0.1, "of the tank, along y"), LENGTH("height", 0.5, "of the tank, along z"),
-    LENGTH("depth", 0.3, "of the water"),
-    LENGTH("wave-height", 0.06, "from trough to crest; of a solitary wave above the still water"),
-    { "period", "s", 1.2, 0, 1e5, "of regular waves; 0: one solitary wave", 0 },
-    { "ramp", "periods", 2, 0, 100, "in which the stroke of the piston grows from 0", 0 },
-    { "beach", "wave lengths", 1, 0, 100, "of the damping zone at the far end; 0: none, a wall", 0 },
-    { "slope", "1", 0, 0, 1000, "N of a slope of 1 : N at the far end in place of the beach; 0: none", 0 },
-    LENGTH("maker-at", 0.3, "where the water begins: the face of the piston at rest"), { 0 } };
+    { "until", "s", 0, 1e-6, 1e5, TEXT("end of the run; 0: six periods after waves reach the beach"), 0 },
+    LENGTH("length", 0, TEXT("of the tank, along x; 0: two wave lengths and the beach")),
+    ACROSS("width", 0.1, TEXT("of the tank, along y")), LENGTH("height", 0.5, TEXT("of the tank, along z")),
+    LENGTH("depth", 0.3, TEXT("of the water")),
+    LENGTH("wave-height", 0.06, TEXT("from trough to crest; of a solitary wave above the still water")),
+    { "period", "s", 1.2, 0, 1e5, TEXT("of regular waves; 0: one solitary wave"), 0 },
+    { "ramp", TEXT("periods"), 2, 0, 100, TEXT("in which the stroke of the piston grows from 0"), 0 },
+    { "beach", TEXT("wave lengths"), 1, 0, 100, TEXT("of the damping zone at the far end; 0: none, a wall"),
+     0 },
+    { "slope", "1", 0, 0, 1000, TEXT("N of a slope of 1 : N at the far end in place of the beach; 0: none"),
+     0 },
+    LENGTH("maker-at", 0.3, TEXT("where the water begins: the face of the piston at rest")), { 0 } };
 
 /* A slope ends so many wave heights above the still water, or at the height of the tank. */
 static const double RUN_UP = 4;
@@ -96,19 +99,19 @@ static plan make_plan(const family_choice *c)
 const char *object_wave(const family_choice *c)
 {
     const double depth = chosen(c, "depth");
-    if (depth > chosen(c, "height")) return "the water is higher than the tank";
+    if (depth > chosen(c, "height")) return TEXT("the water is higher than the tank");
     if (chosen(c, "wave-height") > 0.78*depth)
-        return "--wave-height is more than 0.78 of --depth: such waves break";
+        return TEXT("--wave-height is more than 0.78 of --depth: such waves break");
     if (!(chosen(c, "period") > 0) && (is_given(c, "ramp") || is_given(c, "beach")))
-        return "a solitary wave, --period 0, has neither --ramp nor --beach";
+        return TEXT("a solitary wave, --period 0, has neither --ramp nor --beach");
     if (chosen(c, "slope") > 0 && is_given(c, "beach") && chosen(c, "beach") > 0)
-        return "the far end has --slope or --beach, not both";
+        return TEXT("the far end has --slope or --beach, not both");
     const plan p = make_plan(c);
-    if (chosen(c, "maker-at") >= p.tank) return "the piston stands beyond the tank";
+    if (chosen(c, "maker-at") >= p.tank) return TEXT("the piston stands beyond the tank");
     if (p.slope > 0 && chosen(c, "maker-at") + p.slope >= p.tank)
-        return "piston and slope fill the tank: give more --length, a smaller --slope, or no --length";
+        return TEXT("piston and slope fill the tank: give more --length, a smaller --slope, or no --length");
     return chosen(c, "maker-at") + p.beach >= p.tank
-         ? "piston and beach fill the tank: give more --length, less --beach, or no --length" : NULL;
+         ? TEXT("piston and beach fill the tank: give more --length, less --beach, or no --length") : NULL;
 }
 
 static void put_piston(const family_choice *c, FILE *out, const plan *p, const double size[3])

@@ -32,13 +32,13 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case KEY_AMOUNT:
         o->amount = parse_positive(state, "--amount", value);
-        if (o->amount > 1000) argp_error(state, "--amount: %s is not above 0 to 1000", value);
+        if (o->amount > 1000) argp_error(state, tr("--amount: %s is not above 0 to 1000"), value);
         break;
     case KEY_LIFETIME: o->lifetime = parse_positive(state, "--lifetime", value); break;
     case KEY_MOST:
         o->most = strtoll(value, &end, 10);
         if (end == value || *end || o->most < 1 || o->most > 1 << 30)
-            argp_error(state, "--most: '%s' is not a number from 1 to %d", value, 1 << 30);
+            argp_error(state, tr("--most: '%s' is not a number from 1 to %d"), value, 1 << 30);
         break;
     case KEY_THREADS: o->threads = parse_threads(state, value); break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
@@ -196,11 +196,11 @@ static int make(const foam_options *o)
     if (code == 0) code = write_files(o, results, &looks, foam, &t);
     const double seconds = wall_clock() - begun;
     if (code == 0 && !o->quiet)
-        printf("foam: %s/foam, %lld files, up to %.3g particles at a time, %.3g million particles of water "
-               "in %.3g s\n", o->dir, (long long)t.files, (double)t.most, 1e-6*t.particles, seconds);
+        printf(tr("foam: %s/foam, %lld files, up to %.3g particles at a time, %.3g million particles of "
+               "water in %.3g s\n"), o->dir, (long long)t.files, (double)t.most, 1e-6*t.particles, seconds);
     if (code == 0 && t.left_out > 0)
-        fprintf(stderr, "tobiuo: note: from %g s on there was no room for %.3g particles; --most takes more, "
-                "--amount makes fewer\n", t.since, t.left_out);
+        fprintf(stderr, tr("tobiuo: note: from %g s on there was no room for %.3g particles; --most takes "
+                "more, --amount makes fewer\n"), t.since, t.left_out);
     tobi_foam_free(foam);
     tobi_results_free(results);
     if (code == 0) code = draw_pictures(o->dir, scene);
@@ -232,10 +232,10 @@ const char *foam_objection(const tobi_scene *scene, const tobi_world *world)
     tobi_looks looks = { 0 };
     tobi_error err = { 0 };
     if (fields && !is_listed(fields, "velocity") && !is_listed(fields, "usual"))
-        return "needs the field velocity; add it to output.fields";
+        return tr("needs the field velocity; add it to output.fields");
     const int liquid = tobi_world_looks(world, &looks, &err) == TOBI_OK ? find_spacing(&looks) > 0 : 1;
     tobi_looks_free(&looks);
-    return liquid ? NULL : "a run without a liquid makes none";
+    return liquid ? NULL : tr("a run without a liquid makes none");
 }
 
 /* 1: an output has it. */

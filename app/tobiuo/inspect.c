@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "tobiuo/inspect.h"
 #include "app.h"
+#include "language.h"
 #include "kernel_tables.h"
 #include <math.h>
 #include <stdlib.h>
@@ -33,7 +34,7 @@ static void parse_place(struct argp_state *state, const char *text, double at[3]
     int end = 0, count = sscanf(text, "%lf,%lf%n,%lf%n", &at[0], &at[1], &end, &at[2], &end);
     if (count == 2) at[2] = 0;
     if (count < 2 || text[end] || !isfinite(at[0]) || !isfinite(at[1]) || !isfinite(at[2]))
-        argp_error(state, "--at wants X,Y,Z (or X,Y), not '%s'", text);
+        argp_error(state, tr("--at wants X,Y,Z (or X,Y), not '%s'"), text);
 }
 
 static error_t parse(int key, char *value, struct argp_state *state)
@@ -42,12 +43,12 @@ static error_t parse(int key, char *value, struct argp_state *state)
     char *end;
     switch (key) {
     case 'o':
-        if (!*value) argp_error(state, "--out is empty");
+        if (!*value) argp_error(state, tr("--out is empty"));
         o->out = value;
         break;
     case 'f':
         if (strcmp(value, "svg") != 0 && strcmp(value, "png") != 0)
-            argp_error(state, "--format: '%s' is neither svg nor png", value);
+            argp_error(state, tr("--format: '%s' is neither svg nor png"), value);
         o->kernels.format = value;
         break;
     case KEY_AT:
@@ -56,11 +57,11 @@ static error_t parse(int key, char *value, struct argp_state *state)
         break;
     case KEY_ID:
         o->id = strtoll(value, &end, 10);
-        if (end == value || *end || o->id < 0) argp_error(state, "--id: '%s' is no particle_id", value);
+        if (end == value || *end || o->id < 0) argp_error(state, tr("--id: '%s' is no particle_id"), value);
         break;
     default: return parse_scene_option(state, key, value, &o->set, &o->scene);
     }
-    if (o->has_at && o->id >= 0) argp_error(state, "--at and --id: one of them");
+    if (o->has_at && o->id >= 0) argp_error(state, tr("--at and --id: one of them"));
     return 0;
 }
 
@@ -112,11 +113,15 @@ static tobi_status print_search(tobi_world *world, const fluid *f, int64_t row, 
     if (status == TOBI_OK) status = tobi_world_neighbours(world, f->id[row], NULL, 0, &neighbours, err);
     if (status != TOBI_OK) return status;
     tobi_kernel_name(s.kernel, kernel, sizeof kernel);
-    printf("kernel           %s, support %.6g m\n", kernel, s.support);
-    printf("cells            %d x %d x %d of %.6g x %.6g x %.6g m\n", s.cells[0], s.cells[1], s.cells[2],
+    print_label(tr("kernel"));
+    printf(tr("%s, support %.6g m\n"), kernel, s.support);
+    print_label(tr("cells"));
+    printf(tr("%d x %d x %d of %.6g x %.6g x %.6g m\n"), s.cells[0], s.cells[1], s.cells[2],
            s.width[0], s.width[1], s.width[2]);
-    printf("particles        %lld\n", (long long)s.particles);
-    printf("particle         %lld at %.6g %.6g %.6g m, %lld neighbours\n", (long long)f->id[row],
+    print_label(tr("particles"));
+    printf("%lld\n", (long long)s.particles);
+    print_label(tr("particle"));
+    printf(tr("%lld at %.6g %.6g %.6g m, %lld neighbours\n"), (long long)f->id[row],
            f->place[row][0], f->place[row][1], f->place[row][2], (long long)neighbours);
     return TOBI_OK;
 }
@@ -136,7 +141,8 @@ static int write_files(tobi_scene *scene, tobi_world *world, const inspect_optio
     if (status != TOBI_OK) code = complain("%s", err.text);
     if (code == 0) {
         const tobi_world_def *def = tobi_scene_world_def(scene);
-        printf("files            %s\n\n", dir);
+        print_label(tr("files"));
+        printf("%s\n\n", dir);
         code = write_kernels(&(kernel_options){ dir, o->kernels.format, search.kernel, def->dimension,
                                                 search.support });
     }

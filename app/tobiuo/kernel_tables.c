@@ -40,7 +40,7 @@ static FILE *open_table(const kernel_options *o, const char *name)
 {
     char *path = clear_place(o->dir, name);
     FILE *file = path ? fopen(path, "wx") : NULL;
-    if (path && !file) complain("cannot write %s: %s", path, strerror(errno));
+    if (path && !file) complain("cannot write %s: %s", path, tr(strerror(errno)));
     free(path);
     return file;
 }
@@ -49,7 +49,7 @@ static int close_table(const kernel_options *o, const char *name, FILE *file)
 {
     const int failed = ferror(file);
     if (fclose(file) == 0 && !failed) return 0;
-    return complain("cannot write %s/%s: %s", o->dir, name, strerror(errno));
+    return complain("cannot write %s/%s: %s", o->dir, name, tr(strerror(errno)));
 }
 
 static int write_integrals(const kernel_options *o)
@@ -58,7 +58,8 @@ static int write_integrals(const kernel_options *o)
     const int kernels = list_kernels(names);
     FILE *file = open_table(o, "kernel_integrals.csv");
     if (!file) return EXIT_ERROR;
-    printf("Integral of W on N^%d points, V = (2 support/N)^%d:\n%5s %12s", o->dimension, o->dimension, "N",
+    printf(tr("Integral of W on N^%d points, V = (2 support/N)^%d:\n"), o->dimension, o->dimension);
+    printf("%5s %12s", "N",
            o->dimension == 3 ? "V, m3" : "V, m2");
     fprintf(file, "points_per_side,volume");
     for (int k = 0; k < kernels; k++) printf(" %14s", names[k]), fprintf(file, ",%s", names[k]);
@@ -125,7 +126,7 @@ static int write_script(const kernel_options *o)
     picture p = { .x_label = "r, m", .end = o->support, .panels = 2 };
     FILE *file = open_table(o, "plots.gnuplot");
     if (!file) return EXIT_ERROR;
-    snprintf(p.title, sizeof p.title, "Kernels, support %g m, %d-D", o->support, o->dimension);
+    snprintf(p.title, sizeof p.title, tr("Kernels, support %g m, %d-D"), o->support, o->dimension);
     snprintf(p.panel[0].y_label, sizeof p.panel[0].y_label, "W, 1/m%d", o->dimension);
     snprintf(p.panel[1].y_label, sizeof p.panel[1].y_label, "dW/dr, 1/m%d", o->dimension + 1);
     snprintf(picture_file, sizeof picture_file, "kernels.%s", o->format);

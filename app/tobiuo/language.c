@@ -1,6 +1,6 @@
 /* English texts and their Japanese: the catalogue ja.po as a table, by CMake. The locale of the C
    library is not asked: a machine on which no Japanese one was generated has only "C". Drawback: the
-   library has a table of its own, so a text of both stands in both catalogues. */
+   two tables are searched for a text of the library. */
 #include "language.h"
 #include "tobiuo/tobiuo.h"
 #include <stddef.h>
@@ -12,7 +12,11 @@ const char *app_texts_find(const char *text) __attribute__((format_arg(1)));
 
 static int is_japanese;
 
-const char *tr(const char *text) { return is_japanese ? app_texts_find(text) : text; }
+const char *tr(const char *text)
+{
+    const char *own = is_japanese ? app_texts_find(text) : text;
+    return own == text ? tobi_text(text) : own;
+}
 
 /* Of a Japanese user, by the first variable that says anything. */
 static int asks_for_japanese(void)

@@ -24,12 +24,12 @@ int load_looks(const char *dir, const overrides *set, tobi_scene **scene, tobi_l
     if (asprintf(&path, "%s/resolved.json", dir) < 0) return complain("out of memory");
     if (access(path, F_OK) != 0) {
         free(path);
-        return complain_run(dir, "there are no results of a run (no resolved.json)");
+        return complain_run(dir, tr("there are no results of a run (no resolved.json)"));
     }
     const tobi_status status = tobi_scene_load(path, (const char *const *)set->text, scene, &mistakes, &err);
     free(path);
     if (status != TOBI_OK) return complain_scene(mistakes, &err);
     tobi_report_free(mistakes);
-    say_changed_files(*scene, dir, "the drawing");
+    say_changed_files(*scene, dir, tr("the drawing"));
     return find_looks(*scene, looks);
 }

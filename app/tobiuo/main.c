@@ -1,6 +1,5 @@
 /* tobiuo: picks the command. */
 #include "app.h"
-#include "language.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <malloc.h>
@@ -61,7 +60,7 @@ static int complain_command(const char *word)
     const char *names[COMMAND_COUNT];
     for (int k = 0; k < COMMAND_COUNT; k++) names[k] = commands[k].name;
     const char *near = tobi_suggest(word, names, COMMAND_COUNT);
-    complain("there is no command '%s'%s%s%s", word, near ? "; did you mean " : "", near ? near : "",
+    complain("there is no command '%s'%s%s%s", word, near ? tr("; did you mean ") : "", near ? near : "",
              near ? "?" : "");
     if (!near) print_usage(stderr);
     return EXIT_USAGE;
@@ -121,7 +120,7 @@ static void check_output(void)
 {
     errno = 0;
     if (fflush(stdout) == 0 && !ferror(stdout)) return;
-    complain("cannot write to standard output%s%s", errno ? ": " : "", errno ? strerror(errno) : "");
+    complain("cannot write to standard output%s%s", errno ? ": " : "", errno ? tr(strerror(errno)) : "");
     _exit(EXIT_ERROR);
 }
 

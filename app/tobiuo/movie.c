@@ -3,6 +3,7 @@
    slower by a given factor. Drawback: what makes it is a second program. */
 #define _GNU_SOURCE
 #include "app.h"
+#include "language.h"
 #include "table.h"
 #include <errno.h>
 #include <math.h>
@@ -61,7 +62,7 @@ static const struct kind *find_kind(const char *path)
 const char *movie_objection(const char *path)
 {
     return find_kind(path) ? NULL
-                           : "is no movie that can be made: its name ends in .mp4, .webm, .webp or .gif";
+                           : tr("is no movie that can be made: its name ends in .mp4, .webm, .webp or .gif");
 }
 
 int is_png(const char *path)
@@ -76,7 +77,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case 'o':
         if (movie_objection(value) && !is_png(value))
-            argp_error(state, "--out: '%s' %s, that of a sheet in .png", value, movie_objection(value));
+            argp_error(state, tr("--out: '%s' %s, that of a sheet in .png"), value, movie_objection(value));
         o->out = value;
         break;
     case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;
@@ -206,7 +207,7 @@ static int encode(const char *dir, const char *view, const char *part, const str
     for (size_t k = 0; k < sizeof last/sizeof *last; k++) argument[n++] = (char *)last[k];
     argument[n] = NULL;
     char said[TOOL_SAYS];
-    int code = run_tool(NULL, argument, "makes the movie", "ffmpeg", 0, said);
+    int code = run_tool(NULL, argument, tr("makes the movie"), "ffmpeg", 0, said);
     if (code < 0) code = complain_encoder(dir, view, pictures, said);
     free(filter);
     free(pictures);
@@ -238,7 +239,7 @@ static int write_movie(const char *dir, const char *view, const char *out, const
     char *part = NULL;
     if (asprintf(&part, "%s.part", out) < 0) return complain("out of memory");
     int code = encode_row(dir, view, part, kind, rate);
-    if (code == 0 && rename(part, out) != 0) code = complain("cannot write %s: %s", out, strerror(errno));
+    if (code == 0 && rename(part, out) != 0) code = complain("cannot write %s: %s", out, tr(strerror(errno)));
     if (code != 0) unlink(part);
     free(part);
     return code;
@@ -252,7 +253,7 @@ int prepare_movie(const char *out, int force)
 int check_encoder(void)
 {
     char *const ask[] = { "ffmpeg", "-version", NULL };
-    const int code = run_tool(NULL, ask, "makes the movie", "ffmpeg", 1, NULL);
+    const int code = run_tool(NULL, ask, tr("makes the movie"), "ffmpeg", 1, NULL);
     return code < 0 ? complain("ffmpeg does not work") : code;
 }
 
@@ -265,7 +266,7 @@ int encode_pictures(const char *dir, const char *out, double rate)
 static double check_pictures(const char *dir, int64_t count, int64_t *outputs)
 {
     const double interval = count > 0 ? find_interval(dir, outputs) : 0;
-    if (access(dir, F_OK) != 0) complain_run(dir, "there is no run");
+    if (access(dir, F_OK) != 0) complain_run(dir, tr("there is no run"));
     else if (count == 0) complain("%s has no pictures", dir);
     else if (count > 1 && !(interval > 0))
         complain("%s/history.csv does not tell the times of two outputs, which a movie needs", dir);
@@ -300,7 +301,7 @@ static int make_movie_of(const char *dir, const char *at, const char *view, cons
     const int whole = outputs <= p.end && p.count == p.end;
     if (code == 0 && !whole) say_gaps(at, view, out, &p, outputs);
     if (code == 0)
-        printf("movie: %s, %lld pictures, %.4g s\n", out, (long long)count, (double)count*interval*slow);
+        printf(tr("movie: %s, %lld pictures, %.4g s\n"), out, (long long)count, (double)count*interval*slow);
     return code == 0 && !whole ? EXIT_UNWRITTEN : code;
 }
 
@@ -331,7 +332,7 @@ static int make(const movie_options *o, const char *at, const char *out)
 {
     if (!is_png(out)) return make_movie_of(o->dir, at, o->view, out, o->slow);
     const int code = make_sheet(at, o->view, out);
-    if (code == 0) printf("sheet: %s\n", out);
+    if (code == 0) printf(tr("sheet: %s\n"), out);
     return code;
 }
 
@@ -360,7 +361,7 @@ static int redraw_and_make(const movie_options *o, const char *out)
 {
     char *folder = NULL;
     if (asprintf(&folder, "%s/movie.XXXXXX", o->dir) < 0) return complain("out of memory");
-    int code = mkdtemp(folder) ? 0 : complain("cannot make a folder in %s: %s", o->dir, strerror(errno));
+    int code = mkdtemp(folder) ? 0 : complain("cannot make a folder in %s: %s", o->dir, tr(strerror(errno)));
     if (code == 0) {
         code = draw_missing(o->dir, o->view, &o->set, folder);
         if (code == 0 || find_pictures(folder, o->view).count > 0) code = make(o, folder, out);
@@ -402,7 +403,7 @@ int tobiuo_movie(int argc, char **argv)
     if (asprintf(&own, "%s/movie%s%s.mp4", o.dir, o.view ? "_" : "", o.view ? o.view : "") < 0)
         return complain("out of memory");
     const char *out = o.out ? o.out : own;
-    int code = is_run(&o) ? 0 : complain_run(o.dir, "there is no run (no history.csv)");
+    int code = is_run(&o) ? 0 : complain_run(o.dir, tr("there is no run (no history.csv)"));
     if (code == 0 && !is_png(out)) code = check_speed(&o);
     if (code == 0) code = prepare_movie(out, o.force);
     if (code == 0 && !is_png(out)) code = check_encoder();

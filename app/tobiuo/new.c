@@ -3,6 +3,7 @@
    of words does not know them. */
 #define _GNU_SOURCE
 #include "app.h"
+#include "language.h"
 #include "family.h"
 #include "tobiuo/params.h"
 #include <errno.h>
@@ -13,8 +14,9 @@
 #include <unistd.h>
 
 static const family_option common[] = {
-    { "support", "spacings", 0, 2, 4, "support radius of the kernel (CSML); 0: the method's own", 0 },
-    { "dimension", "1", 3, 2, 3, "2 or 3", 0 },
+    { "support", TEXT("spacings"), 0, 2, 4, TEXT("support radius of the kernel (CSML); 0: the method's own"),
+      0 },
+    { "dimension", "1", 3, 2, 3, TEXT("2 or 3"), 0 },
     { 0 } };
 
 const family_option *family_common(void) { return common; }
@@ -75,26 +77,26 @@ static void print_option(const family_option *o)
 {
     char name[32];
     snprintf(name, sizeof name, "--%s", o->name);
-    printf("      %-16s %s", name, o->doc);
+    printf("      %-16s %s", name, tr(o->doc));
     if (o->def != 0 || o->min == 0) printf(" (%.10g%s%s)", o->def, strcmp(o->unit, "1") ? " " : "",
-                                           strcmp(o->unit, "1") ? o->unit : "");
+                                           strcmp(o->unit, "1") ? tr(o->unit) : "");
     putchar('\n');
 }
 
 int list_families(void)
 {
     const family *f;
-    printf("Families of scenes, their options and defaults:\n");
+    printf(tr("Families of scenes, their options and defaults:\n"));
     for (int k = 0; (f = family_at(k)); k++) {
-        printf("  %s%-17s%s%s\n", colour(stdout, BOLD), f->name, colour(stdout, PLAIN), f->doc);
+        printf("  %s%-17s%s%s\n", colour(stdout, BOLD), f->name, colour(stdout, PLAIN), tr(f->doc));
         for (const family_option *o = f->options; o->name; o++) print_option(o);
     }
-    printf("  of all\n");
+    printf(tr("  of all\n"));
     for (const family_option *o = common; o->name; o++) print_option(o);
-    printf("      --method         isph, eisph, dfsph or wcsph (isph)\n");
-    printf("\nWrite one and run it:\n  tobiuo new static_pressure --spacing 0.0125 --support 2.4\n"
+    printf(tr("      --method         isph, eisph, dfsph or wcsph (isph)\n"));
+    printf(tr("\nWrite one and run it:\n  tobiuo new static_pressure --spacing 0.0125 --support 2.4\n"
            "  tobiuo run static_pressure_PS0d0125_CSML2d4_RK2\n"
-           "\"tobiuo scenes\" lists the shipped scenes; \"tobiuo new NAME\" copies one.\n");
+           "\"tobiuo scenes\" lists the shipped scenes; \"tobiuo new NAME\" copies one.\n"));
     return 0;
 }
 
@@ -102,7 +104,7 @@ int list_families(void)
 
 static int complain_usage(const char *what)
 {
-    complain("%s", what);
+    complain("%s", tr(what));
     return EXIT_USAGE;
 }
 
@@ -115,7 +117,7 @@ static int complain_option(const family *f, const char *name)
     names[count++] = "method";
     const char *near = tobi_suggest(name, names, count);
     complain("%s has no option --%s%s%s%s; \"tobiuo new\" lists all", f->name, name,
-             near ? "; did you mean --" : "", near ? near : "", near ? "?" : "");
+             near ? tr("; did you mean --") : "", near ? near : "", near ? "?" : "");
     return EXIT_USAGE;
 }
 
@@ -133,7 +135,7 @@ static int set_method(family_choice *c, const char *value)
             return 0;
         }
     const char *near = tobi_suggest(value, names, count);
-    complain("--method: '%s' is no method of liquids%s%s%s", value, near ? "; did you mean " : "",
+    complain("--method: '%s' is no method of liquids%s%s%s", value, near ? tr("; did you mean ") : "",
              near ? near : "", near ? "?" : "");
     return EXIT_USAGE;
 }
@@ -152,7 +154,7 @@ static int set_option(family_choice *c, const char *name, const char *value)
         const int own = o->def == 0 && c->value[k] == 0;         /* as its sentence says */
         if (end != value && !*end && whole && (own || c->value[k] >= o->min)
             && c->value[k] <= o->max) return 0;
-        complain("--%s: '%s' is not a %snumber from %g to %g%s%s", name, value, plain ? "whole " : "",
+        complain("--%s: '%s' is not a %snumber from %g to %g%s%s", name, value, plain ? tr("whole ") : "",
                  o->min, o->max, plain ? "" : " ", plain ? "" : o->unit);
         return EXIT_USAGE;
     }
@@ -192,13 +194,13 @@ static int read_arguments(family_choice *c, int argc, char **argv, const char **
     if (!c->family) {
         const char *given = name < argc ? argv[name] : "", *near = near_family(given);
         complain("there is no family '%s'%s%s%s; \"tobiuo new\" lists them", given,
-                 near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
+                 near ? tr("; did you mean ") : "", near ? near : "", near ? "?" : "");
         return EXIT_USAGE;
     }
     for (int k = 0; (o = family_option_at(c->family, k)); k++) c->value[k] = o->def;
     for (int k = 1; k < argc && !code; k++) {
         if (is_option(argv[k])) code = read_option(c, argc, argv, &k);
-        else if (k != name && *dir) code = complain_usage("one FAMILY and one DIR only");
+        else if (k != name && *dir) code = complain_usage(TEXT("one FAMILY and one DIR only"));
         else if (k != name) *dir = argv[k];
     }
     c->dimension = (int)chosen(c, "dimension");
@@ -291,7 +293,7 @@ static int write_folder(const char *dir, const char *text, size_t size)
     if (asprintf(&path, "%s/scene.json", dir) < 0) return complain("out of memory");
     int code = mkdir(dir, 0777) == 0 ? 0
              : errno == EEXIST ? complain("%s is there already; name another folder", dir)
-                               : complain("cannot make the folder '%s': %s", dir, strerror(errno));
+                               : complain("cannot make the folder '%s': %s", dir, tr(strerror(errno)));
     if (!code && (code = write_new(path, text, size)) != 0) rmdir(dir);
     free(path);
     return code;
@@ -318,13 +320,13 @@ int write_family(int argc, char **argv)
     if (code) return code;
     if (c.dimension == 2 && !c.family->flat) return complain("%s is 3-D only", c.family->name);
     const char *object = c.family->object ? c.family->object(&c) : NULL;
-    if (object) return complain("%s: %s", c.family->name, object);
+    if (object) return complain("%s: %s", c.family->name, tr(object));
     char *own = dir ? NULL : name_choice(&c);
     if (!dir) dir = own;
     code = write_scene(&c, dir);
     char quoted[SHELL_WORD];
     if (!code)
-        printf("%s/scene.json is a scene of %s. Run it: tobiuo run %s\n", dir, c.family->name,
+        printf(tr("%s/scene.json is a scene of %s. Run it: tobiuo run %s\n"), dir, c.family->name,
                shell_word(dir, quoted));
     free(own);
     return code;

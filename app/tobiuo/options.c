@@ -1,6 +1,5 @@
 /* Values of options. */
 #include "app.h"
-#include "language.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +7,7 @@
 void parse_arguments(const struct argp *argp, int argc, char **argv, void *input)
 {
     const error_t code = argp_parse(argp, argc, argv, 0, NULL, input);
-    if (code) exit(complain("the arguments cannot be read: %s", strerror(code)));
+    if (code) exit(complain("the arguments cannot be read: %s", tr(strerror(code))));
 }
 
 double parse_positive(struct argp_state *state, const char *option, const char *text)
@@ -16,7 +15,7 @@ double parse_positive(struct argp_state *state, const char *option, const char *
     char *end;
     double value = strtod(text, &end);
     if (end == text || *end != '\0' || !isfinite(value) || value <= 0.0)
-        argp_error(state, "%s: '%s' is not a positive number", option, text);
+        argp_error(state, tr("%s: '%s' is not a positive number"), option, text);
     return value;
 }
 
@@ -25,7 +24,7 @@ double parse_time(struct argp_state *state, const char *option, const char *text
     char *end;
     double value = strtod(text, &end);
     if (end == text || *end != '\0' || !isfinite(value) || value < 0)
-        argp_error(state, "%s: '%s' is not a number from 0 on", option, text);
+        argp_error(state, tr("%s: '%s' is not a number from 0 on"), option, text);
     return value;
 }
 
@@ -34,14 +33,14 @@ int parse_threads(struct argp_state *state, const char *text)
     char *end;
     long value = strtol(text, &end, 10);
     if (end == text || *end != '\0' || value < 0 || value > 4096)
-        argp_error(state, "--threads: '%s' is not a number from 0 (all cores) to 4096", text);
+        argp_error(state, tr("--threads: '%s' is not a number from 0 (all cores) to 4096"), text);
     return (int)value;
 }
 
 void parse_language(struct argp_state *state, const char *value)
 {
     if (choose_language(value) != 0)
-        argp_error(state, "--language: '%s' is neither ja nor en", value);
+        argp_error(state, tr("--language: '%s' is neither ja nor en"), value);
 }
 
 error_t parse_argument(struct argp_state *state, int key, const char *value, const char *name,
@@ -50,13 +49,13 @@ error_t parse_argument(struct argp_state *state, int key, const char *value, con
     switch (key) {
     case ARGP_KEY_ARG:
         if (*argument && strchr(value, '='))
-            argp_error(state, "one %s only; a value is changed by --set %s", name, value);
-        if (*argument) argp_error(state, "one %s only", name);
-        if (!*value) argp_error(state, "%s is empty", name);
+            argp_error(state, tr("one %s only; a value is changed by --set %s"), name, value);
+        if (*argument) argp_error(state, tr("one %s only"), name);
+        if (!*value) argp_error(state, tr("%s is empty"), name);
         *argument = value;
         return 0;
     case ARGP_KEY_END:
-        if (!*argument) argp_error(state, "which %s?", name);
+        if (!*argument) argp_error(state, tr("which %s?"), name);
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -74,7 +73,7 @@ error_t parse_scene_option(struct argp_state *state, int key, const char *value,
         return 0;
     case KEY_SET:
         if (!strchr(value, '=') || value[0] == '=')
-            argp_error(state, "--set wants PATH=VALUE, not '%s'", value);
+            argp_error(state, tr("--set wants PATH=VALUE, not '%s'"), value);
         overrides_add(set, "%s", value);
         return 0;
     default: return parse_argument(state, key, value, "SCENE", scene);

@@ -109,9 +109,9 @@ static int link_picture(const char *dir, const char *view, const pictures *p, in
 {
     char *from = frame_path(dir, view, shown_picture(dir, view, p, k));
     char *whole = from ? realpath(from, NULL) : NULL, *to = frame_path(folder, view, k - p->first);
-    const int code = !whole || !to ? complain("cannot link %s: %s", from ? from : dir, strerror(errno))
+    const int code = !whole || !to ? complain("cannot link %s: %s", from ? from : dir, tr(strerror(errno)))
                    : symlink(whole, to) == 0 ? 0
-                   : complain("cannot make the link %s: %s", to, strerror(errno));
+                   : complain("cannot make the link %s: %s", to, tr(strerror(errno)));
     free(from);
     free(whole);
     free(to);
@@ -120,7 +120,7 @@ static int link_picture(const char *dir, const char *view, const pictures *p, in
 
 int link_pictures(const char *dir, const char *view, const pictures *p, char *folder)
 {
-    int code = mkdtemp(folder) ? 0 : complain("cannot make a folder %s: %s", folder, strerror(errno));
+    int code = mkdtemp(folder) ? 0 : complain("cannot make a folder %s: %s", folder, tr(strerror(errno)));
     if (code != 0) return code;
     char *frames = join_path(folder, "frames");
     code = make_series_folder(frames);

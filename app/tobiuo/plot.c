@@ -2,7 +2,6 @@
 #define _GNU_SOURCE
 #include "plot.h"
 #include "app.h"
-#include "language.h"
 #include "table.h"
 #include <errno.h>
 #include <math.h>
@@ -28,7 +27,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case 'f':
         if (strcmp(value, "svg") != 0 && strcmp(value, "png") != 0)
-            argp_error(state, "--format: '%s' is neither svg nor png", value);
+            argp_error(state, tr("--format: '%s' is neither svg nor png"), value);
         o->format = value;
         break;
     case KEY_LANGUAGE: parse_language(state, value); break;
@@ -346,7 +345,7 @@ static int write_script(plotter *plot)
     char *path = clear_place(plot->folder, "plots.gnuplot");
     if (!path) return EXIT_ERROR;
     plot->script = fopen(path, "wx");
-    int code = plot->script ? 0 : complain("cannot write %s: %s", path, strerror(errno));
+    int code = plot->script ? 0 : complain("cannot write %s: %s", path, tr(strerror(errno)));
     if (code == 0) {
         rows all = { &plot->history, NULL };
         picture_begin_script(plot->script, plot->options->format);
@@ -360,7 +359,7 @@ static int write_script(plotter *plot)
             code = draw_comparison(plot, k);
         int failed = ferror(plot->script);
         if ((fclose(plot->script) != 0 || failed) && code == 0)
-            code = complain("cannot write %s: %s", path, strerror(errno));
+            code = complain("cannot write %s: %s", path, tr(strerror(errno)));
     }
     free(path);
     return code;
@@ -413,7 +412,7 @@ static int draw_all(plotter *plot)
 {
     const char *dir = plot->options->dir;
     if (!has_file(dir, "history.csv"))
-        return complain_run(dir, "there is no run to draw (no history.csv)");
+        return complain_run(dir, tr("there is no run to draw (no history.csv)"));
     const struct { table *t; const char *file, *key; } others[] = {
         { &plot->bodies, "bodies.csv", "name" }, { &plot->solids, "solids.csv", "name" },
         { &plot->probes, "probes.csv", "time" }, { &plot->lines, "lines.csv", "time" },
@@ -425,7 +424,7 @@ static int draw_all(plotter *plot)
     if (asprintf(&plot->folder, "%s/plots", dir) < 0) return complain("out of memory");
     struct stat st;
     if (mkdir(plot->folder, 0777) != 0 && errno != EEXIST)
-        return complain("cannot make %s: %s", plot->folder, strerror(errno));
+        return complain("cannot make %s: %s", plot->folder, tr(strerror(errno)));
     if (lstat(plot->folder, &st) != 0 || !S_ISDIR(st.st_mode))
         return complain("%s is no folder (a link is not followed)", plot->folder);
     code = read_scene(plot);

@@ -26,7 +26,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     report_options *o = state->input;
     switch (key) {
     case 'o':
-        if (!*value) argp_error(state, "--out is empty");
+        if (!*value) argp_error(state, tr("--out is empty"));
         o->out = value;
         break;
     case KEY_FROM: o->from = parse_time(state, "--from", value); break;
@@ -133,7 +133,7 @@ static int read_run(report *r)
     char *history = join(r->dir, "history.csv");
     const int there = access(history, F_OK) == 0;
     free(history);
-    if (!there) return complain_run(r->dir, "there is no run to report on (no history.csv)");
+    if (!there) return complain_run(r->dir, tr("there is no run to report on (no history.csv)"));
     int code = read_one(&r->history, r->dir, "history.csv");
     if (code == 0) code = read_one(&r->bodies, r->dir, "bodies.csv");
     if (code == 0) code = read_one(&r->probes, r->dir, "probes.csv");
@@ -407,12 +407,12 @@ static int write_file(report *r, const char *out)
     if (asprintf(&part, "%s.part", out) < 0) return complain("out of memory");
     unlink(part);                                   /* nothing is written through a link */
     r->file = fopen(part, "wx");
-    int code = r->file ? 0 : complain("cannot write %s: %s", out, strerror(errno));
+    int code = r->file ? 0 : complain("cannot write %s: %s", out, tr(strerror(errno)));
     if (code == 0) {
         write_page(r);
         const int failed = ferror(r->file);
         if (fclose(r->file) != 0 || failed || rename(part, out) != 0) {
-            code = complain("cannot write %s: %s", out, strerror(errno));
+            code = complain("cannot write %s: %s", out, tr(strerror(errno)));
             unlink(part);
         }
     }

@@ -1,7 +1,6 @@
 /* tobiuo resume DIR */
 #define _GNU_SOURCE
 #include "app.h"
-#include "language.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,11 +71,11 @@ int tobiuo_resume(int argc, char **argv)
     if (asprintf(&path, "%s/resolved.json", o.dir) < 0) return complain("out of memory");
     if (access(path, F_OK) != 0) {
         free(path);
-        return complain_run(o.dir, "there is no run to resume (no resolved.json)");
+        return complain_run(o.dir, tr("there is no run to resume (no resolved.json)"));
     }
     tobi_scene *scene = load_scene(path, &o.set);
     /* What changed in a motion or a table holds from here on; what has been computed does not follow it. */
-    if (scene) say_changed_files(scene, o.dir, "the run");
+    if (scene) say_changed_files(scene, o.dir, tr("the run"));
     int code = scene ? resume_scene(scene, &o) : EXIT_ERROR;
     tobi_scene_free(scene);
     free(path);

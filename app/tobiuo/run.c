@@ -1,7 +1,6 @@
 /* tobiuo run SCENE */
 #define _GNU_SOURCE
 #include "app.h"
-#include "language.h"
 #include "view.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,7 +40,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     run_options *o = state->input;
     switch (key) {
     case 'o':
-        if (!*value) argp_error(state, "--out is empty");
+        if (!*value) argp_error(state, tr("--out is empty"));
         o->out = value;
         break;
     case 't': overrides_add(&o->set, "threads=%d", parse_threads(state, value)); break;
@@ -49,13 +48,13 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_LANGUAGE: parse_language(state, value); break;
     case KEY_FRAMES: overrides_add(&o->set, "output.frames=true"); break;
     case KEY_MOVIE:
-        if (movie_objection(value)) argp_error(state, "--movie: '%s' %s", value, movie_objection(value));
+        if (movie_objection(value)) argp_error(state, tr("--movie: '%s' %s"), value, movie_objection(value));
         overrides_add(&o->set, "output.frames=true");
         o->movie = value;
         break;
     case KEY_SURFACE:
         o->surface = surface_format(value);
-        if (!o->surface) argp_error(state, "--surface: '%s' is none of vtp, obj, ply, stl, glb", value);
+        if (!o->surface) argp_error(state, tr("--surface: '%s' is none of vtp, obj, ply, stl, glb"), value);
         break;
     case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;
     case KEY_FOAM: o->foam = 1; break;
@@ -63,7 +62,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_WINDOW: o->window = 1; break;
     case KEY_KEYS: o->keys = value; break;
     case ARGP_KEY_SUCCESS:
-        if (o->slow > 0 && !o->movie && !o->surface) argp_error(state, "--slow needs --movie FILE");
+        if (o->slow > 0 && !o->movie && !o->surface) argp_error(state, tr("--slow needs --movie FILE"));
         break;
     default: return parse_scene_option(state, key, value, &o->set, &o->scene);
     }
@@ -114,7 +113,7 @@ static int record(tobi_scene *scene, tobi_world *world, const run_options *o, co
     free(resolved);
     if (status == TOBI_OK) status = tobi_scene_note_files(scene, dir, 0, &err);
     if (!o->quiet && status == TOBI_OK) print_size(size, dir);
-    if (!o->quiet) print_notes(world, stderr, "tobiuo: note: ");
+    if (!o->quiet) print_notes(world, stderr, tr("tobiuo: note: "));
     tobi_scene_place_error(scene, &err);
     if (status != TOBI_OK) {
         tobi_run_free(run);
@@ -157,7 +156,7 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
     char *dir = results_path(scene, o->out);
     if (tobi_scene_import_table(scene) && !o->quiet)
-        printf("a scene of %s; \"tobiuo check\" lists what became of each of its keys\n",
+        printf(tr("a scene of %s; \"tobiuo check\" lists what became of each of its keys\n"),
                tobi_scene_import_program(scene));
     int code = dir ? check_size(scene, world, o, dir, &size) : complain("out of memory");
     if (code == 0 && o->surface && tobi_scene_world_def(scene)->dimension != 3)

@@ -28,16 +28,16 @@ static int open_table(const sample_run *s, const char *end, sample_table *t)
     free(folder);
     unlink(t->part);
     t->file = fopen(t->part, "wx");
-    return t->file ? 0 : complain("cannot write %s: %s", t->path, strerror(errno));
+    return t->file ? 0 : complain("cannot write %s: %s", t->path, tr(strerror(errno)));
 }
 
 int sample_end_table(sample_table *t, int code)
 {
     const int bad = t->file && ferror(t->file);
     if (t->file && (fclose(t->file) != 0 || bad) && !code)
-        code = complain("cannot write %s: %s", t->path, strerror(errno));
+        code = complain("cannot write %s: %s", t->path, tr(strerror(errno)));
     if (t->file && !code && rename(t->part, t->path) != 0)
-        code = complain("cannot write %s: %s", t->path, strerror(errno));
+        code = complain("cannot write %s: %s", t->path, tr(strerror(errno)));
     if (code && t->part) unlink(t->part);
     free(t->path);
     free(t->part);
@@ -101,7 +101,7 @@ int sample_write_rows(const sample_run *s, double time, sample_table *t)
         }
         fputc('\n', t->file);
     }
-    return ferror(t->file) ? complain("cannot write %s: %s", t->path, strerror(errno)) : 0;
+    return ferror(t->file) ? complain("cannot write %s: %s", t->path, tr(strerror(errno))) : 0;
 }
 
 static int write_arrays(const sample_run *s, const char *end, const tobi_sample_array *arrays, int count,

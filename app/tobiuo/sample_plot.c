@@ -116,14 +116,14 @@ int sample_draw(const sample_run *s)
     int code = p ? make_series_folder(folder) : complain("out of memory");
     char *script = code ? NULL : clear_place(folder, "plots.gnuplot");
     FILE *out = script ? fopen(script, "wx") : NULL;
-    if (!code && !out) code = complain("cannot write %s/plots.gnuplot: %s", folder, strerror(errno));
+    if (!code && !out) code = complain("cannot write %s/plots.gnuplot: %s", folder, tr(strerror(errno)));
     if (out) {
         snprintf(name, sizeof name, "sample_%s.%s", s->name, s->options->format);
         p->x_label = "way along the line, m";
         fill_picture(s, labels, p);
         picture_begin_script(out, s->options->format);
         if (p->panels) picture_write(out, p, name);
-        if (fclose(out) != 0) code = complain("cannot write %s: %s", script, strerror(errno));
+        if (fclose(out) != 0) code = complain("cannot write %s: %s", script, tr(strerror(errno)));
         if (!code && p->panels) code = run_gnuplot(folder);
         if (!code && p->panels) printf("picture: %s/%s\n", folder, name);
         picture_free(p);

@@ -4,6 +4,7 @@
    that is done on the text, so a comment that quotes such a path is changed as well. */
 #define _GNU_SOURCE
 #include "app.h"
+#include "language.h"
 #include <dirent.h>
 #include <errno.h>
 #include <ftw.h>
@@ -27,7 +28,7 @@ static char *read_text(const char *path, size_t *size)
     char *text = file && fstat(fileno(file), &st) == 0 ? malloc((size_t)st.st_size + 1) : NULL;
     *size = text ? fread(text, 1, (size_t)st.st_size, file) : 0;
     if (text) text[*size] = '\0';
-    else complain("%s: %s", path, strerror(errno));
+    else complain("%s: %s", path, tr(strerror(errno)));
     if (file) fclose(file);
     return text;
 }
@@ -35,12 +36,12 @@ static char *read_text(const char *path, size_t *size)
 int write_new(const char *path, const char *text, size_t size)
 {
     FILE *file = fopen(path, "wbx");
-    if (!file) return complain("%s: %s", path, strerror(errno));
+    if (!file) return complain("%s: %s", path, tr(strerror(errno)));
     int failed = fwrite(text, 1, size, file) == size ? 0 : errno;
     if (fclose(file) != 0 && !failed) failed = errno;
     if (!failed) return 0;
     unlink(path);
-    return complain("%s: %s", path, strerror(failed));
+    return complain("%s: %s", path, tr(strerror(failed)));
 }
 
 static int copy_file(const char *from, const char *to)
@@ -55,7 +56,7 @@ static int copy_file(const char *from, const char *to)
 static int make_folder(const char *path)
 {
     if (mkdir(path, 0777) == 0 || errno == EEXIST) return 0;
-    return complain("cannot make the folder '%s': %s", path, strerror(errno));
+    return complain("cannot make the folder '%s': %s", path, tr(strerror(errno)));
 }
 
 /* --- the list ----------------------------------------------------------------------------- */
@@ -63,13 +64,18 @@ static int make_folder(const char *path)
 /* The first sentence of the comments that a scene begins with. */
 static void print_purpose(const char *text)
 {
-    for (const char *p = text; p[0] == '/' && p[1] == '/';) {
-        for (p += 2; *p && *p != '\n'; p++) {
-            putchar(*p);
-            if (*p == '.' && (p[1] == '\n' || p[1] == ' ')) return;
+    char sentence[400];
+    size_t length = 0;
+    int ended = 0;
+    for (const char *p = text; p[0] == '/' && p[1] == '/' && !ended;) {
+        for (p += 2; *p && *p != '\n' && !ended; p++) {
+            if (length < sizeof sentence - 1) sentence[length++] = *p;
+            ended = *p == '.' && (p[1] == '\n' || p[1] == ' ');
         }
         if (*p) p++;
     }
+    sentence[length] = '\0';
+    printf(" %s", tr(sentence + strspn(sentence, " ")));
 }
 
 int tobiuo_scenes(int argc, char **argv)
@@ -79,7 +85,7 @@ int tobiuo_scenes(int argc, char **argv)
     char *folder = tobi_scene_shipped(".");
     if (!folder) return complain("the shipped scenes are not there");
     char **names = list_scenes(folder, &count), *shown = relative_path(folder);
-    printf("Scenes in %s:\n", shown);
+    printf(tr("Scenes in %s:\n"), shown);
     for (size_t k = 0; k < count; k++) {
         char *scene = join(folder, names[k]), *path = join(scene, "scene.json");
         char *text = read_text(path, &size);
@@ -90,7 +96,7 @@ int tobiuo_scenes(int argc, char **argv)
         free(path);
         free(scene);
     }
-    printf("\nCopy one, change it and run it:\n  tobiuo new dam_break my_dam\n  tobiuo run my_dam\n");
+    printf(tr("\nCopy one, change it and run it:\n  tobiuo new dam_break my_dam\n  tobiuo run my_dam\n"));
     free_names(names, count);
     free(folder);
     free(shown);
@@ -185,7 +191,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
 {
     new_options *o = state->input;
     if (key != ARGP_KEY_ARG) return key == ARGP_KEY_END ? 0 : ARGP_ERR_UNKNOWN;
-    if (o->dir) argp_error(state, "one NAME and one DIR only");
+    if (o->dir) argp_error(state, tr("one NAME and one DIR only"));
     if (o->name) o->dir = value;
     else o->name = value;
     return 0;
@@ -208,7 +214,7 @@ int tobiuo_new(int argc, char **argv)
         char *near = near_scene(name);
         const char *word = near && strrchr(near, '/') ? strrchr(near, '/') + 1 : near_family(name);
         complain("there is no shipped scene or family '%s'%s%s%s; \"tobiuo scenes\" and \"tobiuo new\" "
-                 "list them", o.name, word ? "; did you mean " : "", word ? word : "", word ? "?" : "");
+                 "list them", o.name, word ? tr("; did you mean ") : "", word ? word : "", word ? "?" : "");
         free(near);
         return EXIT_ERROR;
     }
@@ -216,7 +222,7 @@ int tobiuo_new(int argc, char **argv)
     const int code = copy_whole(path, dir);
     char quoted[SHELL_WORD];
     if (!code)
-        printf("%s is a copy of %s. Change %s/scene.json, then: tobiuo run %s\n", dir, name, dir,
+        printf(tr("%s is a copy of %s. Change %s/scene.json, then: tobiuo run %s\n"), dir, name, dir,
                shell_word(dir, quoted));
     free(path);
     return code;

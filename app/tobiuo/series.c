@@ -20,7 +20,7 @@ int make_series_folder(const char *path)
 {
     struct stat st;
     if (mkdir(path, 0777) != 0 && errno != EEXIST) return complain("cannot make %s: %s", path,
-                                                                   strerror(errno));
+                                                                   tr(strerror(errno)));
     if (lstat(path, &st) != 0 || !S_ISDIR(st.st_mode)) return complain("%s is no folder", path);
     return 0;
 }
@@ -50,7 +50,7 @@ int write_list(const series *s, const tobi_results *results)
     if (file) fputs("</Collection>\n</VTKFile>\n", file);
     const int bad = !file || ferror(file);
     int code = (file && fclose(file) != 0) || bad || rename(part, path) != 0
-        ? complain("cannot write %s: %s", path, strerror(errno)) : 0;
+        ? complain("cannot write %s: %s", path, tr(strerror(errno))) : 0;
     free(path);
     free(part);
     return code;

@@ -120,8 +120,8 @@ int make_sheet(const char *dir, const char *view, const char *out)
     if (code == 0 && asprintf(&part, "%s.part", out) < 0) code = complain("out of memory");
     errno = 0;
     if (code == 0 && !png_image_write_to_file(&s.image, part, 0, s.pixels, 0, NULL))
-        code = complain("cannot write %s: %s", out, errno ? strerror(errno) : s.image.message);
-    if (code == 0 && rename(part, out) != 0) code = complain("cannot write %s: %s", out, strerror(errno));
+        code = complain("cannot write %s: %s", out, errno ? tr(strerror(errno)) : s.image.message);
+    if (code == 0 && rename(part, out) != 0) code = complain("cannot write %s: %s", out, tr(strerror(errno)));
     if (code != 0 && part) unlink(part);
     free(part);
     free(s.pixels);

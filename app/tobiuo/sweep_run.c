@@ -117,7 +117,7 @@ static int start(const sweep *s, int run, sweep_state state, double end, job *j)
     free(log);
     j->run = run;
     j->begun = wall_clock();
-    return failed ? complain("the program does not start itself: %s", strerror(failed)) : 0;
+    return failed ? complain("the program does not start itself: %s", tr(strerror(failed))) : 0;
 }
 
 /* The last line that a run has said. One that failed in silence had no room for its log, or was killed. */
@@ -141,7 +141,8 @@ static int finish(const sweep *s, const job *j, int state, int done, int todo)
     char *name = sweep_name(s, j->run), text[32];
     const int code = WIFEXITED(state) ? WEXITSTATUS(state) : EXIT_ERROR;
     if (code == 0)
-        printf("[%d/%d] %s: done in %s\n", done, todo, name, duration_text(wall_clock() - j->begun, text));
+        printf(tr("[%d/%d] %s: done in %s\n"), done, todo, name, duration_text(wall_clock() - j->begun,
+                                                                               text));
     else if (code != EXIT_INTERRUPTED) tell_failure(s, name, state);
     fflush(stdout);
     free(name);
@@ -257,7 +258,7 @@ int sweep_write_slurm(const sweep *s)
 {
     char *path = sweep_path(s, "sweep.slurm"), *here = getcwd(NULL, 0);
     FILE *out = fopen(path, "w");
-    int code = out && here ? 0 : complain("cannot write %s: %s", path, strerror(errno));
+    int code = out && here ? 0 : complain("cannot write %s: %s", path, tr(strerror(errno)));
     if (!code) {
         fprintf(out, "#!/bin/sh\n# %d runs of a sweep as an array job. Hand it in: sbatch %s\n"
                      "# Cores, memory and time are the site's: change the lines below.\n"
@@ -271,10 +272,10 @@ int sweep_write_slurm(const sweep *s)
         fputs(" --only \"$SLURM_ARRAY_TASK_ID\"\n# When all have ended:", out);
         put_command(s, out);
         fputs(" --table\n", out);
-        if (ferror(out)) code = complain("cannot write %s: %s", path, strerror(errno));
+        if (ferror(out)) code = complain("cannot write %s: %s", path, tr(strerror(errno)));
     }
-    if (out && fclose(out) != 0 && !code) code = complain("cannot write %s: %s", path, strerror(errno));
-    if (!code) printf("%s is an array job of %d runs: sbatch %s\n", path, s->runs, path);
+    if (out && fclose(out) != 0 && !code) code = complain("cannot write %s: %s", path, tr(strerror(errno)));
+    if (!code) printf(tr("%s is an array job of %d runs: sbatch %s\n"), path, s->runs, path);
     free(path);
     free(here);
     return code;

@@ -259,7 +259,7 @@ int sweep_write_table(const sweep *s)
     int code = write_grid(s, &g, "sweep.csv", 0);
     if (!code) code = write_grid(s, &g, "sweep.txt", 1);
     if (!code) print_short(s, &g);
-    if (!code) printf("%s/sweep.csv and sweep.txt have all columns\n", s->dir);
+    if (!code) printf(tr("%s/sweep.csv and sweep.txt have all columns\n"), s->dir);
     for (int k = 0; k < g.columns*g.rows; k++) free(g.cell[k]);
     free(g.cell);
     for (int f = 0; f < FILES; f++) free_tables(m.of[f], s->runs);
@@ -367,13 +367,13 @@ int sweep_draw(const sweep *s)
     if (!drawn && s->plot) code = complain_column(s);
     script = drawn ? clear_place(s->dir, "plots.gnuplot") : NULL;
     FILE *out = script ? fopen(script, "wx") : NULL;
-    if (drawn && !out) code = complain("cannot write %s: %s", script ? script : s->dir, strerror(errno));
+    if (drawn && !out) code = complain("cannot write %s: %s", script ? script : s->dir, tr(strerror(errno)));
     if (out) {
         picture_begin_script(out, "svg");
         picture_write(out, &p, "sweep.svg");
         fclose(out);
         code = run_gnuplot(s->dir);
-        if (!code) printf("%s/sweep.svg shows %s of all runs\n", s->dir, column[0]);
+        if (!code) printf(tr("%s/sweep.svg shows %s of all runs\n"), s->dir, column[0]);
     }
     for (int run = 0; run < s->runs; run++) free(names[run]);
     picture_free(&p);

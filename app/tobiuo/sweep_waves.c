@@ -58,7 +58,7 @@ static int analyse(const sweep *s, int run)
     overrides_free(&a);
     free(words);
     free(dir);
-    if (failed) return complain("the program does not start itself: %s", strerror(failed));
+    if (failed) return complain("the program does not start itself: %s", tr(strerror(failed)));
     return WIFEXITED(state) ? WEXITSTATUS(state) : EXIT_ERROR;
 }
 

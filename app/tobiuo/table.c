@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "table.h"
 #include "app.h"
+#include "language.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -20,7 +21,7 @@ static char *read_whole(const char *path)
     int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);      /* a pipe must not keep us waiting */
     FILE *file = fd < 0 ? NULL : fdopen(fd, "rb");
     if (!file) {
-        complain("cannot read %s: %s", path, strerror(errno));
+        complain("cannot read %s: %s", path, tr(strerror(errno)));
         if (fd >= 0) close(fd);
         return NULL;
     }
@@ -35,7 +36,7 @@ static char *read_whole(const char *path)
         size_t size = fread(text, 1, (size_t)st.st_size, file);
         text[size] = '\0';
         if (ferror(file) || strlen(text) != size) {
-            complain(ferror(file) ? "cannot read %s" : "%s is not a text", path);
+            complain(ferror(file) ? TEXT("cannot read %s") : TEXT("%s is not a text"), path);
             free(text);
             text = NULL;
         }

@@ -34,7 +34,7 @@ int run_tool(const char *folder, char *const arguments[], const char *does, cons
     posix_spawn_file_actions_t actions;
     pid_t child;
     int state = 0, errors[2];
-    if (said && pipe2(errors, O_CLOEXEC) != 0) return complain("%s: %s", arguments[0], strerror(errno));
+    if (said && pipe2(errors, O_CLOEXEC) != 0) return complain("%s: %s", arguments[0], tr(strerror(errno)));
     posix_spawn_file_actions_init(&actions);
     if (folder) posix_spawn_file_actions_addchdir_np(&actions, folder);
     if (quiet) posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
@@ -48,9 +48,9 @@ int run_tool(const char *folder, char *const arguments[], const char *does, cons
     if (failed == ENOENT)
         return complain("%s is missing, and it %s. On Debian: apt-get install %s", arguments[0], does,
                         package);
-    if (failed) return complain("%s does not start: %s", arguments[0], strerror(failed));
+    if (failed) return complain("%s does not start: %s", arguments[0], tr(strerror(failed)));
     while (waitpid(child, &state, 0) < 0)
-        if (errno != EINTR) return complain("%s: %s", arguments[0], strerror(errno));
+        if (errno != EINTR) return complain("%s: %s", arguments[0], tr(strerror(errno)));
     return WIFEXITED(state) && WEXITSTATUS(state) == 0 ? 0 : -1;
 }
 
@@ -58,7 +58,7 @@ int run_gnuplot(const char *folder)
 {
     char *const arguments[] = { "gnuplot", "-d", "plots.gnuplot", NULL };
     setenv("LC_ALL", "C.UTF-8", 1);      /* without a locale, as in a container, it warns of degree signs */
-    const int code = run_tool(folder, arguments, "draws the pictures", "gnuplot-nox", 0, NULL);
+    const int code = run_tool(folder, arguments, tr("draws the pictures"), "gnuplot-nox", 0, NULL);
     return code < 0 ? complain("gnuplot failed on %s/plots.gnuplot", folder) : code;
 }
 
@@ -70,7 +70,7 @@ char *clear_place(const char *folder, const char *file)
         return NULL;
     }
     if (unlink(path) == 0 || errno == ENOENT) return path;
-    complain("cannot replace %s: %s", path, strerror(errno));
+    complain("cannot replace %s: %s", path, tr(strerror(errno)));
     free(path);
     return NULL;
 }

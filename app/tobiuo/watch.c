@@ -2,7 +2,6 @@
    is none any more, energy from nothing, forces that jump from step to step. Drawback: a resumed run knows
    only its own steps. */
 #include "app.h"
-#include "language.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,9 +64,9 @@ tobi_status watch_step(watch *w, const tobi_world *world, const tobi_step_info *
     for (int k = 0; k < w->body_count; k++)
         if (tobi_world_body(world, k, &body) == TOBI_OK) watch_force(&w->body[k], &body);
     if (!energy_absurd(&w->energy)) return TOBI_OK;
-    snprintf(err->text, sizeof err->text, "the simulation diverged: by t = %g s the kinetic energy of liquid "
-             "and solids has become %.3g J, and all that they and the bodies had at the start was %.3g J; "
-             "shorter time steps (cfl, time_step) may help", w->energy.time, w->energy.kinetic,
+    snprintf(err->text, sizeof err->text, tr("the simulation diverged: by t = %g s the kinetic energy of "
+             "liquid and solids has become %.3g J, and all that they and the bodies had at the start was "
+             "%.3g J; shorter time steps (cfl, time_step) may help"), w->energy.time, w->energy.kinetic,
              w->energy.start + w->energy.bodies);
     return err->status = TOBI_DIVERGED;
 }

@@ -2,6 +2,7 @@
    go one way; answers of second order, as slow drift, are in the significant values and not in the gains. */
 #define _GNU_SOURCE
 #include "app.h"
+#include "language.h"
 #include "waves.h"
 #include <math.h>
 #include <stdlib.h>
@@ -86,8 +87,8 @@ static void note_rows(const wave_run *w, const rows *r, const char *name)
     const double step = (r->time[r->count - 1] - r->time[0])/((double)r->count - 1);
     const double period = 1/w->set.peak;
     if (period < FEW_ROWS*step)
-        fprintf(stderr, "tobiuo: note: --response %s: %.1f rows in a period of the waves; take an interval "
-                "of the output of %.2g s or less\n", name, period/step, period/FEW_ROWS);
+        fprintf(stderr, tr("tobiuo: note: --response %s: %.1f rows in a period of the waves; take an "
+                "interval of the output of %.2g s or less\n"), name, period/step, period/FEW_ROWS);
 }
 
 static response *add_response(answers *a, const char *unit)
@@ -242,8 +243,9 @@ static int complain_name(const answers *a, const known *k, const char *name)
     for (size_t n = 0; n < k->count && !near && used + strlen(k->name[n]) < sizeof list - 8; n++)
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", n ? ", " : "", k->name[n]);
     return complain("--response %s: %s has no body of this name, and no such column in probes.csv, lines.csv "
-                    "or joints.csv; %s %s%s", name, a->run->options->dir, near ? "did you mean" : "there are",
-                    near ? near : k->count ? list : "none", near ? "?" : "");
+                    "or joints.csv; %s %s%s", name, a->run->options->dir, near ? tr("did you mean")
+                    : tr("there are"),
+                    near ? near : k->count ? list : tr("none"), near ? "?" : "");
 }
 
 static int add_named(answers *a, const char *name)
@@ -298,7 +300,8 @@ static void print_responses(const answers *a)
         printf("%-22s %-8s  %10.4g %10.4g %10.4g %11.4g  %21.4g %6.0f\n", r->label, r->unit, r->record.mean,
                r->least, r->most, r->record.height_m0, r->gain[a->peak].gain,
                r->gain[a->peak].phase);
-    printf("waves: %s, H_m0 %.4g m\n", w->options->group_count ? "those that go on past the first --gauges"
+    printf(tr("waves: %s, H_m0 %.4g m\n"), w->options->group_count
+           ? tr("those that go on past the first --gauges")
            : w->set.gauge[0].name, a->height);
 }
 
@@ -381,8 +384,8 @@ static int tell(answers *a)
     int code = take_waves(a);
     const double periods = w->set.peak*(double)w->set.count*w->set.step;
     if (!code && periods < FEW_PERIODS)
-        fprintf(stderr, "tobiuo: note: --response: %.2g periods of the waves; gains and phases of fewer than "
-                "%g are rough\n", periods, FEW_PERIODS);
+        fprintf(stderr, tr("tobiuo: note: --response: %.2g periods of the waves; gains and phases of fewer "
+                "than %g are rough\n"), periods, FEW_PERIODS);
     for (int k = 0; k < w->options->response_count && !code; k++) {
         const char *name = w->options->responses[k];
         for (int n = 0; n < k && !code; n++)

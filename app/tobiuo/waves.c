@@ -34,16 +34,16 @@ static error_t parse(int key, char *value, struct argp_state *state)
     wave_options *o = state->input;
     switch (key) {
     case 'g':
-        if (o->group_count == GROUPS) argp_error(state, "--gauges: at most %d times", GROUPS);
+        if (o->group_count == GROUPS) argp_error(state, tr("--gauges: at most %d times"), GROUPS);
         o->groups[o->group_count++] = value;
         break;
     case 'r':
-        if (o->response_count == RESPONSES) argp_error(state, "--response: at most %d times", RESPONSES);
+        if (o->response_count == RESPONSES) argp_error(state, tr("--response: at most %d times"), RESPONSES);
         o->responses[o->response_count++] = value;
         break;
     case 'f':
         if (strcmp(value, "svg") != 0 && strcmp(value, "png") != 0)
-            argp_error(state, "--format: '%s' is neither svg nor png", value);
+            argp_error(state, tr("--format: '%s' is neither svg nor png"), value);
         o->format = value;
         break;
     case KEY_FROM: o->from = parse_time(state, "--from", value); break;
@@ -166,7 +166,7 @@ static int read_levels(wave_run *w)
 {
     char *path = join_path(w->options->dir, "probes.csv");
     const int missing = access(path, F_OK) != 0;
-    int code = missing ? complain_run(w->options->dir, "there are no sensors (no probes.csv)")
+    int code = missing ? complain_run(w->options->dir, tr("there are no sensors (no probes.csv)"))
         : table_read(&w->levels, path) != 0 ? EXIT_ERROR : 0;
     free(path);
     table_strip_units(&w->levels);
@@ -243,11 +243,11 @@ static int split_group(wave_run *w, int group)
                         "them must be 0.05 to 0.45 wave lengths apart", w->options->groups[group],
                         1/w->set.peak, wave_length(w->set.peak, w->set.depth, w->set.gravity));
     if (w->result[group].resolved < 0.8)
-        fprintf(stderr, "tobiuo: note: --gauges %s: only %.0f %% of the energy is of frequencies that they "
-                "tell apart\n", w->options->groups[group], 100*w->result[group].resolved);
+        fprintf(stderr, tr("tobiuo: note: --gauges %s: only %.0f %% of the energy is of frequencies that "
+                "they tell apart\n"), w->options->groups[group], 100*w->result[group].resolved);
     if (w->result[group].back > MUCH_BACK*w->result[group].forward)
-        fprintf(stderr, "tobiuo: note: --gauges %s: more comes back than goes on; name the gauges in the "
-                "direction of the waves that arrive\n", w->options->groups[group]);
+        fprintf(stderr, tr("tobiuo: note: --gauges %s: more comes back than goes on; name the gauges in the "
+                "direction of the waves that arrive\n"), w->options->groups[group]);
     return 0;
 }
 
@@ -265,8 +265,8 @@ static void note_growth(const wave_run *w)
             else late += square/((double)s->count*3/4);
         }
         if (early >= 0.36*late) continue;
-        fprintf(stderr, "tobiuo: note: waves at %s are %.2g times as high in the first quarter of the time "
-                "as later; --from leaves it out\n", s->gauge[g].name, sqrt(early/late));
+        fprintf(stderr, tr("tobiuo: note: waves at %s are %.2g times as high in the first quarter of the "
+                "time as later; --from leaves it out\n"), s->gauge[g].name, sqrt(early/late));
         return;
     }
 }
@@ -295,7 +295,7 @@ static int width_of(int column)
 static void print_tables(const wave_run *w)
 {
     const wave_set *s = &w->set;
-    printf("waves from %.4g to %.4g s, %.3g m deep, %.3g s and %.3g m long at the peak\n", s->begin,
+    printf(tr("waves from %.4g to %.4g s, %.3g m deep, %.3g s and %.3g m long at the peak\n"), s->begin,
            s->begin + ((double)s->count - 1)*s->step, s->depth, 1/s->peak,
            wave_length(s->peak, s->depth, s->gravity));
     printf("%-12s", "gauge");
@@ -307,7 +307,7 @@ static void print_tables(const wave_run *w)
         printf("  %5d\n", s->gauge[g].waves);
     }
     if (w->options->group_count == 0) {
-        printf("--gauges A,B,C tells the waves that go on from A to C, and those that come back\n");
+        printf(tr("--gauges A,B,C tells the waves that go on from A to C, and those that come back\n"));
         return;
     }
     printf("%-24s  on, H_m0 m  back, H_m0 m  reflection  transmission\n", "gauges");
@@ -403,10 +403,10 @@ int waves_draw(const wave_run *w, const picture *p, const char *name)
     if (out) {
         picture_begin_script(out, w->options->format);
         picture_write(out, p, file);
-        if (fclose(out) != 0) code = complain("cannot write %s: %s", script, strerror(errno));
+        if (fclose(out) != 0) code = complain("cannot write %s: %s", script, tr(strerror(errno)));
         if (!code) code = run_gnuplot(folder);
         if (!code) printf("%s/%s\n", folder, file);
-    } else if (!code) code = complain("cannot write %s/plots.gnuplot: %s", folder, strerror(errno));
+    } else if (!code) code = complain("cannot write %s/plots.gnuplot: %s", folder, tr(strerror(errno)));
     free(script);
     free(folder);
     return code;

@@ -67,7 +67,7 @@ static void begin(viewer *v)
     v->kept = -1;
     if (!v->recording || asprintf(&frames, "%s/frames", v->recording) < 0) return;
     if (mkdir(v->recording, 0777) != 0 || mkdir(frames, 0777) != 0) {
-        viewer_note(v, "cannot make %.200s: %s", frames, strerror(errno));
+        viewer_note(v, "cannot make %.200s: %s", frames, tr(strerror(errno)));
         free(v->recording);
         v->recording = NULL;
     } else {

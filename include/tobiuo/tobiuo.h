@@ -43,6 +43,9 @@ TOBI_API const char *tobi_status_text(tobi_status status);
    for all that the process says from then on; what was said stays. As with setlocale, no other thread may be
    within a call of the library. Keys, names, numbers and units are the same in both. */
 TOBI_API tobi_status tobi_set_language(const char *name, tobi_error *err);
+/* A text of the library in that language, for programs that show others than messages: "fluid". Itself where
+   there is no other. */
+TOBI_API const char *tobi_text(const char *english);
 
 TOBI_API tobi_world_def  tobi_default_world_def(void);
 TOBI_API tobi_dfsph_def  tobi_default_dfsph_def(void);

@@ -102,6 +102,26 @@ def column_texts(library):
                 yield column.doc.decode(), f"column {column.name.decode()}"
 
 
+def complaints(root):
+    """Formats of complain(), which looks them up itself."""
+    for path in sorted((root / "app").rglob("*.c")):
+        text = path.read_text(encoding="utf-8")
+        for call in re.finditer(r"\bcomplain\s*\(", text):
+            inside = check_messages().arguments(text, call.end())
+            found = check_messages().LITERALS.search(re.sub(r'"\s*PRI([du])64\s*"', r"l\1", inside))
+            if found and re.search("[A-Za-z]{2}", CONVERSION.sub("", literal(found.group(0)))):
+                yield literal(found.group(0)), path.name
+
+
+def purposes(root):
+    """First sentences of the shipped scenes, which `tobiuo scenes` lists."""
+    for path in sorted((root / "scenes").glob("*/scene.json")):
+        head = re.match(r"(?://[^\n]*\n)*", path.read_text(encoding="utf-8")).group(0)
+        sentence = re.match(r".*?\.(?= |$)", " ".join(line[2:].strip() for line in head.splitlines()))
+        if sentence:
+            yield sentence.group(0), str(path.relative_to(root))
+
+
 def unmarked_texts(root):
     """What goes into a message or a note by %s without tr: a guess by its words."""
     for path in sorted((root / "src").rglob("*.c")):
@@ -162,20 +182,23 @@ def main(library, root=pathlib.Path(__file__).parents[2]):
         return 77
     check_itself()
     root = pathlib.Path(root)
-    own = [*marked_texts(root / "app"), *column_texts(library), *stage_texts(root)]
-    found = check_catalogue(polib, root, "app/tobiuo/ja.po", own)
-    found += check_catalogue(polib, root, "src/ja.po", library_texts(root))
+    own = [*marked_texts(root / "app"), *complaints(root), *purposes(root), *column_texts(library), *stage_texts(root)]
+    known = {entry.msgid for entry in polib.pofile(str(root / "src/ja.po"), encoding="utf-8")}
+    found = check_catalogue(polib, root, "src/ja.po", library_texts(root))
+    found += check_catalogue(polib, root, "app/tobiuo/ja.po", own, known)
     unmarked = list(unmarked_texts(root))
     print("\n".join(unmarked))
     return 1 if found + len(unmarked) else 0
 
 
-def check_catalogue(polib, root, name, pairs):
-    """Prints the faults and returns their number."""
+def check_catalogue(polib, root, name, pairs, elsewhere=()):
+    """Prints the faults and returns their number. Texts that stand elsewhere may stand here too."""
     texts = {}
     for text, place in pairs:
         texts.setdefault(text, place)
     entries = [e for e in polib.pofile(str(root / name), encoding="utf-8") if not e.obsolete]
+    here = {e.msgid for e in entries}
+    texts = {text: place for text, place in texts.items() if text in here or text not in elsewhere}
     found = list(faults([(e.msgid, e.msgstr, e.fuzzy) for e in entries], texts))
     print("\n".join(found + [f"{name}: {len(texts)} texts, {len(found)} faults"]))
     return len(found)
