@@ -271,7 +271,7 @@ static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, const tobi_
     char hint[200];
     b->vessel = def->vessel;
     b->sealed = def->sealed;
-    TOBI_TRY(tobi_body_make_mesh(b, def, dimension, err));
+    TOBI_TRY(tobi_body_make_mesh(b, def, box, err));
     TOBI_TRY(tobi_mesh_transform(&b->mesh, def->scale, def->rotation_axis, def->rotation_angle,
                                  def->translation, err));
     if (tobi_mesh_hint_units(&b->mesh, dimension, box->size, hint, sizeof hint) > 0)

@@ -177,7 +177,7 @@ void tobi_body_carry(const tobi_body *b, const double place[3], const double u[6
    one shape. body_shape.c */
 /* Which key of a definition gives the shape: "mesh", "box" ... */
 const char *tobi_body_shape_key(const tobi_body_def *def);
-tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err);
+tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, const tobi_box *box, tobi_error *err);
 /* When the body is absent. TOBI_INVALID for bodies that are not prescribed, and times in the wrong order. */
 tobi_status tobi_body_plan_absence(tobi_body *b, const tobi_body_def *def, const tobi_box *box,
                                    tobi_error *err);

@@ -100,16 +100,75 @@ static tobi_status make_outline(tobi_body *b, const tobi_body_def *def, int dime
     return tobi_mesh_outline(whose, &def->outline, dimension, &b->mesh, err);
 }
 
-static tobi_status make_terrain(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
+/* The domain as a terrain lies in its file, before scale, rotation and translation; 0: it is no rectangle
+   along the lines of the file. */
+static int find_place(const tobi_body_def *def, const tobi_box *box, double lower[2], double upper[2])
+{
+    const double *axis = def->rotation_axis;
+    const double turn = (axis[2] < 0 ? -1 : 1)*def->rotation_angle*acos(-1)/180;
+    const int is_square = fabs(sin(2*turn)) < 1e-12;
+    if (def->rotation_angle != 0 && (axis[0] != 0 || axis[1] != 0 || !is_square)) return 0;
+    for (int a = 0; a < 2; a++) lower[a] = INFINITY, upper[a] = -INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const double x = box->lower[0] + (k & 1 ? box->size[0] : 0) - def->translation[0];
+        const double y = box->lower[1] + (k & 2 ? box->size[1] : 0) - def->translation[1];
+        const double at[2] = { turn == 0 ? x : cos(turn)*x + sin(turn)*y,
+                               turn == 0 ? y : cos(turn)*y - sin(turn)*x };
+        for (int a = 0; a < 2; a++) {
+            lower[a] = fmin(lower[a], at[a]/def->scale[a]);
+            upper[a] = fmax(upper[a], at[a]/def->scale[a]);
+        }
+    }
+    return 1;
+}
+
+/* A survey reaches farther, and is finer, than a scene needs it. One that moves stays as it is. */
+static tobi_status fit_terrain(const tobi_body *b, const tobi_body_def *def, const tobi_box *box,
+                               tobi_terrain *t, char *text, size_t room, tobi_error *err)
+{
+    const int64_t before[2] = { t->nx, t->ny };
+    const double spacing[2] = { b->spacing/def->scale[0], b->spacing/def->scale[1] };
+    double lower[2], upper[2];
+    int64_t factor[2];
+    int was_cut = 0;
+    size_t used = 0;
+    *text = '\0';
+    if (!def->motion && def->dynamics == TOBI_PRESCRIBED && find_place(def, box, lower, upper)) {
+        const tobi_status status = tobi_terrain_cut(t, lower, upper, &was_cut, err);
+        if (status == TOBI_NOT_FOUND)
+            return tobi_fail(err, TOBI_INVALID,
+                             "body '%s': its terrain reaches from %g to %g m in x and from "
+                             "%g to %g m in y of its file, the domain there from %g to %g m and from %g to "
+                             "%g m", b->name, t->x[0], t->x[t->nx - 1], t->y[0], t->y[t->ny - 1], lower[0],
+                             upper[0], lower[1], upper[1]);
+        if (status != TOBI_OK) return status;
+    }
+    if (was_cut)
+        used = (size_t)snprintf(text, room, tr("its terrain reaches beyond the domain: %lld x %lld of its "
+                                               "%lld x %lld lines are used"), (long long)t->nx,
+                                (long long)t->ny, (long long)before[0], (long long)before[1]);
+    tobi_terrain_thin(t, spacing, factor);
+    if (factor[0] > 1 || factor[1] > 1)
+        snprintf(text + used, room - used,
+                 tr("%sits terrain is finer than a quarter of the spacing: one line in %lld along x and in "
+                    "%lld along y is kept, a mean around it"), used ? "; " : "", (long long)factor[0],
+                 (long long)factor[1]);
+    return TOBI_OK;
+}
+
+static tobi_status make_terrain(tobi_body *b, const tobi_body_def *def, const tobi_box *box, tobi_error *err)
 {
     tobi_terrain t;
     tobi_error why = { 0 };
-    if (dimension == 2)
+    char text[400] = "";
+    if (box->dimension == 2)
         return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s': a 2-D scene has no terrain; an outline with a "
                          "base is a bed there", b->name);
     tobi_status status = tobi_terrain_read(def->terrain_file, &t, &why);
     if (status != TOBI_OK) tobi_fail(err, status, "body '%s': its terrain: %s", b->name, why.text);
-    else status = tobi_mesh_terrain(b->name, &t, def->terrain_base, &b->mesh, err);
+    else status = fit_terrain(b, def, box, &t, text, sizeof text, err);
+    if (status == TOBI_OK) status = tobi_mesh_terrain(b->name, &t, def->terrain_base, &b->mesh, err);
+    if (status == TOBI_OK && *text) tobi_mesh_note(&b->mesh, "%s", text);
     tobi_terrain_free(&t);
     return status;
 }
@@ -134,8 +193,9 @@ const char *tobi_body_shape_key(const tobi_body_def *def)
     return def->mesh ? "mesh" : keys[find_kind(def, &shapes)];
 }
 
-tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
+tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, const tobi_box *box, tobi_error *err)
 {
+    const int dimension = box->dimension;
     int shapes;
     const int kind = find_kind(def, &shapes);
     if (shapes > 1)
@@ -147,7 +207,7 @@ tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dime
                                : kind == PLATE ? make_plate(b, def, dimension, err)
                                : kind == KNIFE ? make_knife(b, def, dimension, err)
                                : kind == OUTLINE ? make_outline(b, def, dimension, err)
-                               : kind == TERRAIN ? make_terrain(b, def, dimension, err)
+                               : kind == TERRAIN ? make_terrain(b, def, box, err)
                                                : make_round(b, def, kind, dimension, err);
     return tobi_at_key(err, status, "%s", tobi_body_shape_key(def));
 }
