@@ -94,7 +94,9 @@ int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* A scene's mistakes, or the error's text; frees the report. Returns EXIT_ERROR. */
 int complain_scene(tobi_report *report, const tobi_error *err);
 
-/* The head of a line of a list: the text, filled up with blanks as wide as a terminal shows it. */
+/* What fits of the text, filled up with blanks, as wide as a terminal shows it. */
+void print_columns(FILE *file, const char *text, int columns);
+/* The same as the head of a line of a list. */
 enum { LABEL = 17 };
 void print_label(const char *text);
 /* Prints the world's notes on its meshes, a line each after `head`. */

@@ -24,13 +24,19 @@ void print_notes(const tobi_world *world, FILE *file, const char *head)
     for (int k = 0; (text = tobi_world_note(world, k)); k++) fprintf(file, "%s%s\n", head, text);
 }
 
-void print_label(const char *text)
+void print_columns(FILE *file, const char *text, int columns)
 {
-    int columns = 0;
-    for (const unsigned char *c = (const unsigned char *)text; *c; c++)     /* letters of Japanese are wide */
-        columns += *c >= 0xe3 ? 2 : *c < 0x80 || *c >= 0xc0;
-    printf("%s%*s", text, columns < LABEL ? LABEL - columns : 1, "");
+    for (; *text; text++) {
+        const unsigned char c = (unsigned char)*text;
+        const int wide = c >= 0xe3 ? 2 : c < 0x80 || c >= 0xc0;       /* letters of Japanese are wide */
+        if (wide > columns) break;
+        columns -= wide;
+        fputc(c, file);
+    }
+    fprintf(file, "%*s", columns, "");
 }
+
+void print_label(const char *text) { print_columns(stdout, text, LABEL); }
 
 int complain_scene(tobi_report *report, const tobi_error *err)
 {

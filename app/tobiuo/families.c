@@ -40,17 +40,19 @@ void put_head(const family_choice *c, FILE *out, const double size[3], const cha
 {
     static const double origin[3];
     const double g = 9.81, turn = tilt*acos(-1)/180;
-    fprintf(out, "// %s: %s.\n", c->family->name, title);
-    fprintf(out, "// Written by \"tobiuo new %s\". SI units; \"tobiuo describe\" tells any key.\n{\n",
+    fprintf(out, tr("// %s: %s.\n"), c->family->name, title);
+    fprintf(out, tr("// Written by \"tobiuo new %s\". SI units; \"tobiuo describe\" tells any key.\n"),
             c->family->name);
+    fputs("{\n", out);
     fprintf(out, "  \"method\": \"%s\",\n", c->method);
-    if (c->dimension == 2) fputs("  \"dimension\": 2,                    // x along the tank, y up\n", out);
+    if (c->dimension == 2)
+        fprintf(out, "  \"dimension\": 2,                    // %s\n", tr("x along the tank, y up"));
     if (chosen(c, "support") > 0)
-        fprintf(out, "  \"%s\": { \"support\": %.10g },           // CSML, spacings\n", c->method,
-                chosen(c, "support"));
+        fprintf(out, "  \"%s\": { \"support\": %.10g },           // %s\n", c->method, chosen(c, "support"),
+                tr("CSML, spacings"));
     fputs("  \"domain\": { ", out);
     put_corners(c, out, origin, size);
-    fputs(" },     // its sides are walls without friction\n  \"gravity\": ", out);
+    fprintf(out, " },     // %s\n  \"gravity\": ", tr("its sides are walls without friction"));
     put_place(c, out, g*sin(turn), 0, -g*cos(turn));
     fprintf(out, ",\n  \"spacing\": %.10g,\n", chosen(c, "spacing"));
 }
@@ -70,7 +72,7 @@ static void put_air(const family_choice *c, FILE *out, const double high[3])
     const int room[2] = { high[2] < size[2], high[0] < size[0] };
     if (!(chosen(c, "air") > 0) || !(room[0] || room[1])) return;
     fprintf(out, ",\n    { \"name\": \"air\", \"density\": %.10g, \"viscosity\": 1.8e-5, \"visible\": false,"
-            "     // cushions impacts\n      \"fill\": [", chosen(c, "air"));
+            "     // %s\n      \"fill\": [", chosen(c, "air"), tr("cushions impacts"));
     for (int k = 0; k < 2; k++) {
         if (!room[k]) continue;
         fputs(k > 0 && room[0] ? ",\n                { \"box\": { " : " { \"box\": { ", out);
@@ -123,7 +125,8 @@ static void write_static(const family_choice *c, FILE *out)
 {
     const double size[3] = { chosen(c, "length"), chosen(c, "width"), chosen(c, "height") };
     const double zero[3] = { 0 }, water[3] = { size[0], size[1], chosen(c, "depth") };
-    put_world(c, out, size, "water at rest; sensors on the floor, at half depth on a wall, and the level", 0);
+    put_world(c, out, size, tr("water at rest; sensors on the floor, at half depth on a wall, and the level"),
+              0);
     put_water(c, out, zero, water);
     fputs("  \"probes\": [", out);
     put_probe(c, out, 1, "floor", "point", size[0]/2, size[1]/2, 0);
@@ -167,7 +170,7 @@ static void write_dam(const family_choice *c, FILE *out)
 {
     const double size[3] = { chosen(c, "length"), chosen(c, "width"), chosen(c, "height") }, zero[3] = { 0 };
     const double water[3] = { chosen(c, "water-length"), size[1], chosen(c, "water-height") };
-    put_world(c, out, size, "a column of water collapses and hits the far wall", 0);
+    put_world(c, out, size, tr("a column of water collapses and hits the far wall"), 0);
     put_water(c, out, zero, water);
     fputs("  \"probes\": [", out);
     put_probe(c, out, 1, "floor", "point", 0, size[1]/2, 0);
@@ -201,7 +204,7 @@ static void write_lobovsky(const family_choice *c, FILE *out)
     const double size[3] = { 1.61, 0.15, chosen(c, "height") }, zero[3] = { 0 };
     const double water[3] = { 0.6, size[1], chosen(c, "water-height") };
     char name[16];
-    put_world(c, out, size, "the dam break of Lobovsky et al., Ocean Eng. 82 (2014) 150", 0);
+    put_world(c, out, size, tr("the dam break of Lobovsky et al., Ocean Eng. 82 (2014) 150"), 0);
     put_water(c, out, zero, water);
     put_gate(c, out, water[0], size[1]);
     fputs("  \"probes\": [", out);
@@ -229,7 +232,7 @@ static void write_kamra(const family_choice *c, FILE *out)
     const double size[3] = { 0.8, 0.2, chosen(c, "height") }, zero[3] = { 0 };
     const double water[3] = { chosen(c, "water-length"), size[1], chosen(c, "water-height") };
     const double low[3] = { 0.6, 0.075, 0 }, high[3] = { 0.65, 0.125, size[2] };
-    put_world(c, out, size, "a dam breaks on a post that stands in the tank (Kamra et al. 2019)", 0);
+    put_world(c, out, size, tr("a dam breaks on a post that stands in the tank (Kamra et al. 2019)"), 0);
     put_water(c, out, zero, water);
     if (chosen(c, "post") == 1) {
         fputs("  \"bodies\": [ { \"name\": \"post\", \"box\": { ", out);
@@ -265,7 +268,7 @@ static void write_impact(const family_choice *c, FILE *out)
     const double at = chosen(c, "box-at"), half = chosen(c, "box-width")/2, up = chosen(c, "box-height");
     const double low[3] = { at, size[1]/2 - half, 0 };
     const double high[3] = { at + chosen(c, "box-length"), size[1]/2 + half, up };
-    put_world(c, out, size, "a dam breaks onto a box, as in SPHERIC test 2 (Kleefsman et al. 2005)", 0);
+    put_world(c, out, size, tr("a dam breaks onto a box, as in SPHERIC test 2 (Kleefsman et al. 2005)"), 0);
     put_water(c, out, zero, water);
     fputs("  \"bodies\": [ { \"name\": \"box\", \"box\": { ", out);
     put_corners(c, out, low, high);
@@ -305,7 +308,7 @@ static void write_slosh(const family_choice *c, FILE *out)
 {
     const double size[3] = { chosen(c, "length"), chosen(c, "width"), chosen(c, "height") };
     const double zero[3] = { 0 }, water[3] = { size[0], size[1], chosen(c, "depth") };
-    put_world(c, out, size, "water swings in a tank that is tilted; all is seen from the tank",
+    put_world(c, out, size, tr("water swings in a tank that is tilted; all is seen from the tank"),
               chosen(c, "period") > 0 ? 0 : chosen(c, "angle"));
     put_frame(c, out, size);
     put_water(c, out, zero, water);
@@ -341,7 +344,7 @@ static void write_hose(const family_choice *c, FILE *out)
     const double size[3] = { chosen(c, "length"), chosen(c, "width"), up + 6*d };
     const double zero[3] = { 0 }, water[3] = { size[0], size[1], chosen(c, "depth") };
     const double wide = chosen(c, "diameter");
-    put_world(c, out, size, "a hose fills a glass", 0);
+    put_world(c, out, size, tr("a hose fills a glass"), 0);
     put_water(c, out, zero, water);
     fputs("  \"inlets\": [ { \"name\": \"hose\", \"centre\": ", out);
     put_place(c, out, size[0]/2, size[1]/2, 0.8*up);

@@ -123,21 +123,23 @@ static void put_piston(const family_choice *c, FILE *out, const plan *p, const d
     fputs("  \"bodies\": [\n    { \"name\": \"piston\", \"box\": { ", out);
     put_corners(c, out, back, face);
     fprintf(out, " },\n      \"motion\": { \"piston\": {\n"
-            "        \"depth\": %.10g,                  // m, of the still water\n", depth);
+            "        \"depth\": %.10g,                  // %s\n", depth, tr("m, of the still water"));
     if (chosen(c, "period") > 0)
-        fprintf(out, "        \"ramp\": %.10g,                   // s, in which its stroke grows from 0\n"
-                "        // height: m from trough to crest; period: s; %s (Madsen 1971)\n"
+        fprintf(out, "        \"ramp\": %.10g,                   // %s\n        // %s%s (Madsen 1971)\n"
                 "        \"regular\": { \"height\": %.10g, \"period\": %.10g, \"order\": %d }\n", p->ramp,
-                second ? "order 2: no free waves of half the period" : "too long and high for order 2",
+                tr("s, in which its stroke grows from 0"), tr("height: m from trough to crest; period: s; "),
+                second ? tr("order 2: no free waves of half the period")
+                : tr("too long and high for order 2"),
                 height, chosen(c, "period"), second ? 2 : 1);
     else
-        fprintf(out, "        \"solitary\": { \"height\": %.10g } // m above the still water\n", height);
+        fprintf(out, "        \"solitary\": { \"height\": %.10g } // %s\n", height,
+                tr("m above the still water"));
     fputs("      } } }", out);
     if (p->slope > 0) {
-        fprintf(out, ",\n    // points of its upper side, m; base: what the body reaches down to\n"
-                "    { \"name\": \"slope\", \"sealed\": true,         // no water below it\n"
+        fprintf(out, ",\n    // %s\n    { \"name\": \"slope\", \"sealed\": true,         // %s\n"
                 "      \"outline\": { \"points\": [[%.10g, 0], [%.10g, %.10g]], \"base\": 0",
-                p->tank - p->slope, p->tank, p->top);
+                tr("points of its upper side, m; base: what the body reaches down to"),
+                tr("no water below it"), p->tank - p->slope, p->tank, p->top);
         if (c->dimension == 3) fprintf(out, ", \"from\": 0, \"to\": %.10g", size[1]);
         fputs(" } }", out);
     }
@@ -160,9 +162,9 @@ static void put_beach(const family_choice *c, FILE *out, const plan *p, const do
 {
     const double low[3] = { p->tank - p->beach, 0, 0 };
     if (!(p->beach > 0)) return;
-    fprintf(out, "  // The beach: velocities of the water decay at a rate that grows along the box to\n"
-            "  // %.10g 1/s at its end, 10 over the period.\n  \"damping_zones\": [ { \"box\": { ",
-            tidy(10/chosen(c, "period")));
+    fprintf(out, tr("  // The beach: velocities of the water decay at a rate that grows along the box to\n"
+            "  // %.10g 1/s at its end, 10 over the period.\n"), tidy(10/chosen(c, "period")));
+    fputs("  \"damping_zones\": [ { \"box\": { ", out);
     put_corners(c, out, low, size);
     fprintf(out, " }, \"rate\": %.10g } ],\n", tidy(10/chosen(c, "period")));
 }
@@ -174,11 +176,11 @@ static void put_gauges(const family_choice *c, FILE *out, const plan *p, const d
     static const double apart[] = { 0, 0.1, 0.25 };
     const double at = chosen(c, "maker-at"), room = p->tank - p->beach - p->slope - at;
     const int regular = chosen(c, "period") > 0;
-    fprintf(out, "  // Sensors of the level, m above the floor, in probes.csv%s%s\n  \"probes\": [",
-            p->slope > 0 ? "; runup: how high water runs up, m"
-                         : p->beach > 0 ? "" : "; wall: pressure, Pa",
-            regular ? ".\n  // G2 and G3 stand 1/10 and 1/4 of a wave length behind G1: such a row tells "
-            "waves\n  // that come back: tobiuo waves DIR --gauges G1,G2,G3" : "");
+    fprintf(out, "  // %s%s%s\n  \"probes\": [", tr("Sensors of the level, m above the floor, in probes.csv"),
+            p->slope > 0 ? tr("; runup: how high water runs up, m")
+                         : p->beach > 0 ? "" : tr("; wall: pressure, Pa"),
+            regular ? tr(".\n  // G2 and G3 stand 1/10 and 1/4 of a wave length behind G1: such a row tells "
+            "waves\n  // that come back: tobiuo waves DIR --gauges G1,G2,G3") : "");
     for (int k = 0; k < 3; k++) {
         const double x = regular ? at + room/2 + apart[k]*fmin(p->length, room) : at + (k + 1)*room/4;
         char name[16];
@@ -198,24 +200,24 @@ void write_wave(const family_choice *c, FILE *out)
     const double low[3] = { chosen(c, "maker-at"), 0, 0 }, high[3] = { size[0], size[1], chosen(c, "depth") };
     const int regular = chosen(c, "period") > 0;
     const double interval = regular ? chosen(c, "period")/10 : p.until/100;
-    char title[256], end[64];
-    if (p.slope > 0) snprintf(end, sizeof end, "runs up a slope of 1 : %.10g", chosen(c, "slope"));
-    else snprintf(end, sizeof end, p.beach > 0 ? "ends on a beach" : "meets a wall");
+    char title[512], end[128];
+    if (p.slope > 0) snprintf(end, sizeof end, tr("runs up a slope of 1 : %.10g"), chosen(c, "slope"));
+    else snprintf(end, sizeof end, "%s", p.beach > 0 ? tr("ends on a beach") : tr("meets a wall"));
     if (regular)
-        snprintf(title, sizeof title, "a piston makes a train of waves, which %s\n// The waves are %.4g m "
-                 "long and travel at %.4g m/s, their energy at %.4g m/s (linear theory)", end, p.length,
+        snprintf(title, sizeof title, tr("a piston makes a train of waves, which %s\n// The waves are %.4g m "
+                 "long and travel at %.4g m/s, their energy at %.4g m/s (linear theory)"), end, p.length,
                  p.speed, p.group);
     else
-        snprintf(title, sizeof title, "a piston makes a solitary wave, which %s\n"
-                 "// The wave is %.4g m long and travels at %.4g m/s (Goring 1978)", end, p.length, p.speed);
+        snprintf(title, sizeof title, tr("a piston makes a solitary wave, which %s\n"
+                 "// The wave is %.4g m long and travels at %.4g m/s (Goring 1978)"), end, p.length, p.speed);
     put_head(c, out, size, title, 0);
     fprintf(out, "  \"end_time\": %.10g,", p.until);
-    if (regular) fprintf(out, "                   // s: %.4g periods", p.until/chosen(c, "period"));
+    if (regular) fprintf(out, tr("                   // s: %.4g periods"), p.until/chosen(c, "period"));
     fputc('\n', out);
     put_water(c, out, low, high);
     put_piston(c, out, &p, size);
     put_beach(c, out, &p, size);
     put_gauges(c, out, &p, size);
-    fprintf(out, "  \"output\": { \"interval\": %.10g }       // s between pictures and files of "
-            "particles\n}\n", interval);
+    fprintf(out, "  \"output\": { \"interval\": %.10g }       // %s\n}\n", interval,
+            tr("s between pictures and files of particles"));
 }

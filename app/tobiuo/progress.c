@@ -36,7 +36,7 @@ static void write_end(double left, char *buffer, size_t room)
     if (localtime_r(&now, &today) && localtime_r(&end, &then))
         strftime(clock, sizeof clock, today.tm_yday == then.tm_yday && today.tm_year == then.tm_year
                                           ? "%H:%M" : "%Y-%m-%d %H:%M", &then);
-    snprintf(buffer, room, "%s left, ends %s", duration_text(left, duration), clock);
+    snprintf(buffer, room, tr("%s left, ends %s"), duration_text(left, duration), clock);
 }
 
 /* Seconds that the world has spent in steps. */
@@ -61,9 +61,10 @@ static void rewrite_line(const progress *p, double share, const char *line)
     const int full = (int)(share*BAR + 0.5), text = p->columns - 1 - (BAR + 8);
     for (int k = 0; k < BAR; k++) bar[k] = k < full ? '#' : '-';
     bar[BAR] = '\0';
-    if (text < 20) fprintf(stderr, "\r%-*.*s", p->columns - 1, p->columns - 1, line);
-    else fprintf(stderr, "\r%s[%s]%s%4.0f %% %-*.*s", colour(stderr, GREEN), bar, colour(stderr, PLAIN),
-                 100*share, text, text, line);
+    if (text >= 20)
+        fprintf(stderr, "\r%s[%s]%s%4.0f %% ", colour(stderr, GREEN), bar, colour(stderr, PLAIN), 100*share);
+    else fputc('\r', stderr);
+    print_columns(stderr, line, text >= 20 ? text : p->columns - 1);
 }
 
 static void print_line(progress *p, const tobi_world *world, const tobi_step_info *info, double end)
@@ -75,13 +76,13 @@ static void print_line(progress *p, const tobi_world *world, const tobi_step_inf
     write_end(done > 0.0 ? (now - p->begun)*(end - info->time)/done : 0.0, left, sizeof left);
     bool converged = info->density_converged && info->divergence_converged && !info->viscosity_failed;
     if (info->density_iterations + info->divergence_iterations > 0)    /* the method has a solver */
-        snprintf(solver, sizeof solver, "  iterations %d+%d%s", info->density_iterations,
-                 info->divergence_iterations, converged ? "" : " (not converged)");
+        snprintf(solver, sizeof solver, tr("  iterations %d+%d%s"), info->density_iterations,
+                 info->divergence_iterations, converged ? "" : tr(" (not converged)"));
     double drawing = 0;
     const int64_t drawn = p->run ? tobi_run_pictures(p->run, &drawing) : 0;
-    if (drawn > 0) snprintf(pictures, sizeof pictures, ", %.3g pictures/s beside", (double)drawn/drawing);
-    if (outside > 0.1) snprintf(writing, sizeof writing, ", output %.0f %%", 100*outside);
-    snprintf(line, sizeof line, "t %.5f/%g s  %s  step %lld  dt %.3g s%s  %.2f M particle-steps/s%s%s",
+    if (drawn > 0) snprintf(pictures, sizeof pictures, tr(", %.3g pictures/s beside"), (double)drawn/drawing);
+    if (outside > 0.1) snprintf(writing, sizeof writing, tr(", output %.0f %%"), 100*outside);
+    snprintf(line, sizeof line, tr("t %.5f/%g s  %s  step %lld  dt %.3g s%s  %.2f M particle-steps/s%s%s"),
              info->time, end, left, (long long)info->step, info->dt, solver,
              spent > 0 ? p->particle_steps/spent*1e-6 : 0, writing, pictures);
     if (p->columns) rewrite_line(p, span > 0 ? done/span : 1, line);

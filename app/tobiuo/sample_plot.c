@@ -55,7 +55,7 @@ static void fill_panel(const sample_run *s, const quantity *q, char labels[][48]
         for (int l = 0; l < lines; l++) {
             const int number = lines > 1 ? l : k;
             const curve like = { .label = labels[number], .colour = number };
-            curve band = { .label = "mean +- rms", .style = CURVE_DASHED, .colour = 6 };
+            curve band = { .label = tr("mean +- rms"), .style = CURVE_DASHED, .colour = 6 };
             add_curve(s, a, &like, q, l, values, NULL, 0);
             for (int side = -1; mean && lines == 1 && side <= 1; side += 2, band.label = "")
                 add_curve(s, a, &band, q, l, values, rms, side);
@@ -86,7 +86,7 @@ static void make_labels(const sample_run *s, char labels[][48])
     for (int k = 0; k < CURVE_LIMIT; k++) {
         if (o->line_count > 1)
             snprintf(labels[k], sizeof *labels, "%.47s", k < o->line_count ? o->line[k] : "");
-        else if (o->mean) snprintf(labels[k], sizeof *labels, "mean");
+        else if (o->mean) snprintf(labels[k], sizeof *labels, "%s", tr("mean"));
         else snprintf(labels[k], sizeof *labels, "%.4g s", k < s->shown_count ? s->shown[k].time : 0);
     }
 }
@@ -97,9 +97,9 @@ static void fill_picture(const sample_run *s, char labels[][48], picture *p)
     const double from = tobi_results_time(s->results, s->first);
     const double to = tobi_results_time(s->results, s->end - 1);
     make_labels(s, labels);
-    if (o->mean) snprintf(p->title, sizeof p->title, "%s, means from %.4g to %.4g s", s->name, from, to);
-    else if (o->line_count > 1) snprintf(p->title, sizeof p->title, "%s at %.4g s", s->name, to);
-    else snprintf(p->title, sizeof p->title, "%s from %.48s", s->name, o->line[0]);
+    if (o->mean) snprintf(p->title, sizeof p->title, tr("%s, means from %.4g to %.4g s"), s->name, from, to);
+    else if (o->line_count > 1) snprintf(p->title, sizeof p->title, tr("%s at %.4g s"), s->name, to);
+    else snprintf(p->title, sizeof p->title, tr("%s from %.48s"), s->name, o->line[0]);
     for (int64_t i = 0; i < s->places.count; i++) p->end = fmax(p->end, s->places.way[i]);
     for (int f = 0; f < s->field_count; f++)
         for (int part = 0; part < s->field[f].components && p->panels < PANEL_LIMIT; part++) {
@@ -119,7 +119,7 @@ int sample_draw(const sample_run *s)
     if (!code && !out) code = complain("cannot write %s/plots.gnuplot: %s", folder, tr(strerror(errno)));
     if (out) {
         snprintf(name, sizeof name, "sample_%s.%s", s->name, s->options->format);
-        p->x_label = "way along the line, m";
+        p->x_label = tr("way along the line, m");
         fill_picture(s, labels, p);
         picture_begin_script(out, s->options->format);
         if (p->panels) picture_write(out, p, name);

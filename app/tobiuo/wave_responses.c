@@ -349,16 +349,17 @@ static void write_gains(FILE *out, const void *what)
 /* A panel for each unit. */
 static int draw_gains(const answers *a)
 {
-    picture p = { .title = "Gains over the waves", .x_label = "frequency, Hz",
+    picture p = { .x_label = tr("frequency, Hz"),
                   .begin = 0.4*a->run->set.peak, .end = 2*a->run->set.peak };
     char units[PANEL_LIMIT][24];
+    snprintf(p.title, sizeof p.title, "%s", tr("Gains over the waves"));
     for (const response *r = a->list; r < a->list + a->count; r++) {
         int k = 0;
         while (k < p.panels && strcmp(units[k], r->unit) != 0) k++;
         if (k == PANEL_LIMIT) continue;
         if (k == p.panels) {
             snprintf(units[p.panels++], sizeof units[0], "%s", r->unit);
-            snprintf(p.panel[k].y_label, sizeof p.panel[k].y_label, "gain, %s per m", r->unit);
+            snprintf(p.panel[k].y_label, sizeof p.panel[k].y_label, tr("gain, %s per m"), r->unit);
         }
         waves_add_curve(a->run, &p.panel[k], r->label, &r->gain[0].gain, sizeof *r->gain/sizeof(double));
     }

@@ -416,9 +416,9 @@ int waves_draw(const wave_run *w, const picture *p, const char *name)
 static int draw_spectra(const wave_run *w)
 {
     const wave_set *s = &w->set;
-    picture p = { .title = "Spectra of the waves", .panels = 1, .x_label = "frequency, Hz",
-                  .end = 3*s->peak };
-    snprintf(p.panel[0].y_label, sizeof p.panel[0].y_label, "density, m2/Hz");
+    picture p = { .panels = 1, .x_label = tr("frequency, Hz"), .end = 3*s->peak };
+    snprintf(p.title, sizeof p.title, "%s", tr("Spectra of the waves"));
+    snprintf(p.panel[0].y_label, sizeof p.panel[0].y_label, "%s", tr("density, m2/Hz"));
     for (int g = 0; g < s->gauges; g++)
         waves_add_curve(w, &p.panel[0], s->gauge[g].name, s->gauge[g].density, 1);
     const int code = waves_draw(w, &p, "wave_spectra");

@@ -7,7 +7,7 @@
 #pragma once
 #include "base/error.h"
 
-enum { TOBI_MESH_NOTES = 1000 };
+enum { TOBI_MESH_NOTES = 2000 };
 
 typedef struct tobi_mesh {
     int64_t vertex_count, triangle_count;

@@ -24,7 +24,7 @@ static void describe_world(const tobi_system *s, tobi_rigid_world *r)
 
 tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
 {
-    enum { NOTES = 8000 };
+    enum { NOTES = 16000 };
     tobi_system *s = &w->system[0];
     tobi_rigid_world world;
     if (!tobi_body_any_free(s->sim->bodies, s->sim->body_count) || w->dynamics) return TOBI_OK;
