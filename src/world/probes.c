@@ -169,6 +169,21 @@ tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_
     return TOBI_OK;
 }
 
+/* Half a spacing away from the sides of the domain; 1: that moved it. A face of a body that lies on a side
+   has no liquid before it. */
+static int move_inside(const tobi_world *w, double deep, double x[3])
+{
+    const tobi_box *box = &w->system[0].box;
+    int moved = 0;
+    for (int a = 0; a < box->dimension; a++) {
+        const double within = fmin(fmax(x[a], deep), box->size[a] - deep);
+        if (box->periodic[a] || within == x[a]) continue;
+        x[a] = within;
+        moved = 1;
+    }
+    return moved;
+}
+
 /* What lies in a body has no liquid: its values are those of what the kernels reach, or 0. */
 tobi_status tobi_world_note_probes(tobi_world *w, tobi_error *err)
 {
@@ -181,11 +196,15 @@ tobi_status tobi_world_note_probes(tobi_world *w, tobi_error *err)
         if (p->def.kind != TOBI_PROBE_POINT) continue;
         for (int a = 0; a < 3; a++)
             x[a] = a < w->sim.def.dimension ? p->def.position[a] - w->system[0].box.lower[a] : 0;
+        const int moved = move_inside(w, deep, x);
         for (int b = 0; b < w->sim.body_count; b++) {
             const tobi_bvh *bvh = w->sim.bodies[b].bvh;
-            if (!tobi_bvh_inside(bvh, x) || tobi_bvh_closest(bvh, x, deep, &hit)) continue;
-            snprintf(text, sizeof text, tr("lies deep in body '%s' at the start, where there is no liquid: "
-                     "let it lie on the surface\n"), w->sim.bodies[b].name);
+            if (!tobi_bvh_inside(bvh, x) || tobi_bvh_closest(bvh, x, (moved ? 0.98 : 1)*deep, &hit)) continue;
+            snprintf(text, sizeof text, moved ?
+                     tr("lies between a side of the domain and body '%s' at the start, where there is no "
+                        "liquid, so that its pressure is 0: let it lie on a surface that liquid reaches\n") :
+                     tr("lies deep in body '%s' at the start, where there is no liquid: let it lie on the "
+                        "surface\n"), w->sim.bodies[b].name);
             TOBI_TRY(tobi_world_add_notes(w, "probe", p->name, text, err));
         }
     }

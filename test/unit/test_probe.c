@@ -1,4 +1,5 @@
-/* Probes: a linear field is read exactly in the fluid, an even pressure nearly so on walls; levels. */
+/* Probes: a linear field is read exactly in the fluid, an even pressure nearly so on walls; levels; what is
+   told of points in bodies. */
 #include "tobiuo/tobiuo.h"
 #include <math.h>
 #include <setjmp.h>
@@ -7,6 +8,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <stdlib.h>
+#include <string.h>
 
 static tobi_world *make_tank(int dimension, double gravity)
 {
@@ -129,6 +131,76 @@ static void refuses_probes_outside(void **state)
     tobi_world_destroy(world);
 }
 
+/* 0.08 m deep, with a block on the floor. */
+static tobi_world *make_tank_with_block(const char *method)
+{
+    tobi_error err;
+    tobi_world *world;
+    tobi_world_def w = tobi_default_world_def();
+    tobi_fluid_def f = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_body_def b = tobi_default_body_def();
+    w.method = method;
+    w.dimension = 2;
+    w.spacing = 0.01;
+    w.domain_max[0] = w.domain_max[1] = 0.2;
+    w.gravity[1] = -9.81, w.gravity[2] = 0;
+    fill.box_max[0] = 0.2, fill.box_max[1] = 0.08;
+    b.name = "block";
+    b.box_min[0] = 0.06, b.box_max[0] = 0.12, b.box_max[1] = 0.06;
+    assert_int_equal(tobi_world_create(&w, NULL, &world, &err), TOBI_OK);
+    assert_int_equal(tobi_world_add_fluid(world, &f, &fill, 1, &err), TOBI_OK);
+    assert_int_equal(tobi_world_add_body(world, &b, &err), TOBI_OK);
+    return world;
+}
+
+/* Where it stands there is no floor that liquid presses; beside it and on its faces all counts. A mean over
+   the face above its foot is that of half a spacing higher. */
+static void reads_the_foot_of_a_body(void **state)
+{
+    const double x[] = { 0.06, 0.0625, 0.0575, 0.06, 0.12, 0.09 }, y[] = { 0, 0.001, 0, 0.001, 0, 0 };
+    const double bottom = 0.08*9810, within[] = { 0.01, 0.01, 0.01, 0.07, 0.01, 0 };
+    tobi_world *world = make_tank_with_block("isph");
+    tobi_error err;
+    tobi_probe_info info;
+    (void)state;
+    for (int k = 0; k < 3; k++) assert_int_equal(tobi_world_step(world, 0, NULL, &err), TOBI_OK);
+    for (int k = 0; k < 6; k++) {
+        char name[] = "a";
+        name[0] = (char)(name[0] + k);
+        const int probe = add(world, name, TOBI_PROBE_POINT, x[k], y[k], 0);
+        const double expected = k < 5 ? bottom : 0;
+        assert_int_equal(tobi_world_probe(world, probe, &info, &err), TOBI_OK);
+        if (!(fabs(info.pressure - expected) <= within[k]*bottom))
+            fail_msg("%g, %g: %g Pa, not %g", x[k], y[k], info.pressure, expected);
+    }
+    tobi_world_destroy(world);
+}
+
+/* 2 cm deep in a block is more than half a spacing, 5 mm; on its face is where sensors sit. Its face on the
+   floor is none. */
+static void tells_points_in_bodies(void **state)
+{
+    static const struct { double x, y; const char *note; } cases[] = {
+        { 0.06, 0.02, NULL }, { 0.08, 0.02, "probe 'p': lies deep in body 'block'" },
+        { 0.06, 0, NULL }, { 0.064, 0.002, NULL }, { 0.05, 0, NULL },
+        { 0.08, 0, "probe 'p': lies between a side of the domain and body 'block'" },
+        { 0.08, 0.003, "probe 'p': lies between a side of the domain and body 'block'" },
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        tobi_world *world = make_tank_with_block("dfsph");
+        tobi_error err;
+        int told = 0;
+        add(world, "p", TOBI_PROBE_POINT, cases[k].x, cases[k].y, 0);
+        assert_int_equal(tobi_world_start(world, &err), TOBI_OK);
+        for (int n = 0; tobi_world_note(world, n); n++)
+            told += !!strstr(tobi_world_note(world, n), cases[k].note ? cases[k].note : "probe 'p'");
+        assert_int_equal(told, cases[k].note != NULL);
+        tobi_world_destroy(world);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -136,6 +208,8 @@ int main(void)
         cmocka_unit_test(reads_walls_and_corners),
         cmocka_unit_test(measures_the_level),
         cmocka_unit_test(refuses_probes_outside),
+        cmocka_unit_test(reads_the_foot_of_a_body),
+        cmocka_unit_test(tells_points_in_bodies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

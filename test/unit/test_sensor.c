@@ -483,28 +483,6 @@ static void scenes_tell_the_place(void **state)
            "probes[0].filter.cutoff: is 60 Hz, more than half of 100");
 }
 
-/* 2 cm deep in a block is more than half a spacing, 5 mm; on its face is where sensors sit. */
-static void a_point_deep_in_a_body_is_told(void **state)
-{
-    (void)state;
-    for (int k = 0; k < 2; k++) {
-        tobi_world *world = make_tank(2, 0, 0.1, "dfsph");
-        tobi_probe_def p = make("p", TOBI_PROBE_POINT, k ? 0.08 : 0.06, 0.02, 0);
-        tobi_body_def b = tobi_default_body_def();
-        int told = 0;
-        b.name = "block";
-        set_vector(b.box_min, 0.06, 0, 0);
-        set_vector(b.box_max, 0.12, 0.06, 0);
-        OK(tobi_world_add_body(world, &b, &err));
-        OK(tobi_world_add_probe(world, &p, &err));
-        OK(tobi_world_start(world, &err));
-        for (int n = 0; tobi_world_note(world, n); n++)
-            told += !!strstr(tobi_world_note(world, n), "probe 'p': lies deep in body 'block'");
-        assert_int_equal(told, k);
-        tobi_world_destroy(world);
-    }
-}
-
 static void two_along_x(const double x[3], double *v) { (void)x; v[0] = 2, v[1] = v[2] = 0; }
 
 /* 0.08 m of water, and air up to the lid. */
@@ -583,7 +561,6 @@ int main(void)
         cmocka_unit_test(bad_sensors_are_refused), cmocka_unit_test(rates_and_filters_are_checked),
         cmocka_unit_test(scenes_tell_the_place), cmocka_unit_test(a_sensor_is_of_one_fluid),
         cmocka_unit_test(a_deforming_body_holds_no_sensor),
-        cmocka_unit_test(a_point_deep_in_a_body_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

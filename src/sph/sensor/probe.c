@@ -135,6 +135,7 @@ static int find_surface(const tobi_system *s, const double x[3], membrane *m)
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_bvh_hit hit;
         if (!tobi_bvh_closest(s->sim->bodies[k].bvh, x, nearest, &hit)) continue;
+        if (found && fabs(hit.signed_distance) >= nearest) continue;      /* at its foot: the side */
         nearest = fabs(hit.signed_distance);
         m->bvh = s->sim->bodies[k].bvh;
         memcpy(m->foot, hit.point, sizeof m->foot);
@@ -144,13 +145,15 @@ static int find_surface(const tobi_system *s, const double x[3], membrane *m)
     return found;
 }
 
-/* Whether a place of the disc is still wall: inside the domain, on the body. */
+/* Whether a place of the disc is still wall: inside the domain, on the body, and not under what stands on a
+   side, where no liquid comes. */
 static int is_on_wall(const membrane *m, const double y[3])
 {
     tobi_bvh_hit hit;
     for (int a = 0; a < m->s->box.dimension; a++)
         if (!m->s->box.periodic[a] && (y[a] < 0 || y[a] > m->s->box.size[a])) return 0;
-    return !m->bvh || tobi_bvh_closest(m->bvh, y, 0.1*m->s->smoothing.spacing, &hit);
+    return m->bvh ? tobi_bvh_closest(m->bvh, y, 0.1*m->s->smoothing.spacing, &hit)
+                  : !tobi_boundary_covers(m->s, y, m->normal);
 }
 
 /* Share of the kernel around y that other sides of the domain leave to the fluid. */
