@@ -13,6 +13,7 @@
    (LuaJIT's own order depends on a random seed). */
 #define _GNU_SOURCE 1
 #include "rigid/script_process.h"
+#include "base/error.h"
 #include "base/limit.h"
 #include <lauxlib.h>
 #include <lua.h>
@@ -45,7 +46,7 @@ typedef struct process {
 
 /* Our side: gets the user's environment, returns the walks. `at` tells C which point is in work. */
 static const char DRIVER[] =
-    "local user = ...\n"
+    "local user, tr = ...\n"
     "local ffi, math, string, table = require('ffi'), math, string, table\n"
     "require('jit.opt').start('-fold')\n"
     "local error, type, rawget, next, select, unpack = error, type, rawget, next, select, unpack\n"
@@ -71,21 +72,21 @@ static const char DRIVER[] =
     "function user.string.format(form, ...)\n"
     "    local given, n = { ... }, select('#', ...)\n"
     "    if type(form) == 'string' and string.find((string.gsub(form, '%%%%', '')), '%%[^%a]*p') then\n"
-    "        error('string.format knows no %p: addresses differ from run to run', 2)\n"
+    "        error(tr'string.format knows no %p: addresses differ from run to run', 2)\n"
     "    end\n"
     "    for k = 1, n do if addressed[type(given[k])] then given[k] = type(given[k]) end end\n"
     "    return string.format(form, unpack(given, 1, n))\n"
     "end\n"
     "function user.pairs(t)\n"
-    "    if type(t) ~= 'table' then error('pairs needs a table, not ' .. type(t), 2) end\n"
+    "    if type(t) ~= 'table' then error(string.format(tr'pairs needs a table, not %s', type(t)), 2) end\n"
     "    local keys, texts, i = {}, {}, 0\n"
     "    for k in next, t do\n"
     "        local kind = type(k)\n"
     "        if kind == 'number' then keys[#keys + 1] = k\n"
     "        elseif kind == 'string' then texts[#texts + 1] = k\n"
     "        elseif kind ~= 'boolean' then\n"
-    "            error('pairs has no order for a key that is a ' .. kind .. '; allowed are numbers, ' ..\n"
-    "                  'texts, true and false', 2)\n"
+    "            error(string.format(tr('pairs has no order for a key that is a %s; ' ..\n"
+    "                  'allowed are numbers, texts, true and false'), kind), 2)\n"
     "        end\n"
     "    end\n"
     "    table.sort(keys)\n"
@@ -104,11 +105,11 @@ static const char DRIVER[] =
     "    for k, v in pairs(user) do names[k] = v end\n"
     "    for k in pairs(names) do user[k] = nil end\n"
     "    setmetatable(names, { __index = function(_, k)\n"
-    "        error(\"unknown name '\" .. text(k) .. \"'\", 2)\n"
+    "        error(string.format(tr\"unknown name '%s'\", text(k)), 2)\n"
     "    end })\n"
     "    setmetatable(user, { __index = names, __newindex = function(_, k)\n"
-    "        error(\"assignment to the global '\" .. text(k) .. \"': write local; from one time \" ..\n"
-    "              \"to the next \" .. remembered .. \" is remembered\", 2)\n"
+    "        error(string.format(tr(\"assignment to the global '%s': write local; from one time \" ..\n"
+    "              \"to the next %s is remembered\"), text(k), remembered), 2)\n"
     "    end })\n"
     "end\n"
     "local f, h, walked\n"
@@ -122,7 +123,7 @@ static const char DRIVER[] =
     "        at[0] = i\n"
     "        local x, y, z, more = f(from[k], from[k + 1], from[k + 2], t, steer)\n"
     "        if type(x) ~= 'number' or type(y) ~= 'number' or type(z) ~= 'number' or more ~= nil then\n"
-    "            error(walked .. ' must return three numbers', 0)\n"
+    "            error(string.format(tr'%s must return three numbers', walked), 0)\n"
     "        end\n"
     "        to[k], to[k + 1], to[k + 2] = x, y, z\n"
     "    end\n"
@@ -134,7 +135,7 @@ static const char DRIVER[] =
     "    if type(value) ~= 'table' or value[4] ~= nil then value = {} end\n"
     "    for k = 1, 3 do\n"
     "        if type(value[k]) ~= 'number' then\n"
-    "            error('control must return a ' .. name .. ' of three numbers', 0)\n"
+    "            error(string.format(tr'control must return a %s of three numbers', name), 0)\n"
     "        end\n"
     "        into[first + k - 1] = value[k]\n"
     "    end\n"
@@ -146,7 +147,7 @@ static const char DRIVER[] =
     "    for k = 1, 16 do\n"
     "        local number = value[k] == nil and k > #value and 0 or value[k]\n"
     "        if type(number) ~= 'number' then\n"
-    "            error('control must return a state of at most 16 numbers', 0)\n"
+    "            error(tr'control must return a state of at most 16 numbers', 0)\n"
     "        end\n"
     "        into[9 + k] = number\n"
     "    end\n"
@@ -156,8 +157,8 @@ static const char DRIVER[] =
     "    local names = {}\n"
     "    for name in next, t do names[#names + 1] = name end\n"
     "    table.sort(names)\n"
-    "    error(\"body has no joint '\" .. text(k) .. \"'; it has \" ..\n"
-    "          (#names > 0 and table.concat(names, ', ') or 'none'), 2)\n"
+    "    error(string.format(tr\"body has no joint '%s'; it has %s\", text(k),\n"
+    "          #names > 0 and table.concat(names, ', ') or tr'none'), 2)\n"
     "end }\n"
     "local function list(names, from)\n"
     "    local joints = {}\n"
@@ -170,20 +171,20 @@ static const char DRIVER[] =
     "local function drive(motor, names, joints, into)\n"
     "    if motor == nil then return end\n"
     "    if type(motor) ~= 'table' then\n"
-    "        error('control must return a motor as { NAME = number }', 0)\n"
+    "        error(tr'control must return a motor as { NAME = number }', 0)\n"
     "    end\n"
     "    for name, value in user.pairs(motor) do\n"
     "        local known = joints[name]\n"
     "        if type(value) ~= 'number' then\n"
-    "            error('control must return a motor as { NAME = number }', 0)\n"
+    "            error(tr'control must return a motor as { NAME = number }', 0)\n"
     "        end\n"
     "        for k = 1, #names do if names[k] == name then into[25 + k] = value end end\n"
     "    end\n"
     "end\n"
     "local inputs = { __index = function(_, k)\n"
-    "    error(\"body has no '\" .. text(k) .. \"'; it has position, orientation, velocity, \" ..\n"
+    "    error(string.format(tr(\"body has no '%s'; it has position, orientation, velocity, \" ..\n"
     "          'angular_velocity, contact_force, contact_torque, mass, inertia, phase, phase_time, ' ..\n"
-    "          'step, steer, state and joints', 2)\n"
+    "          'step, steer, state and joints'), text(k)), 2)\n"
     "end }\n"
     "local function control(from, into, names)\n"
     "    from, into = ffi.cast('const double *', from), ffi.cast('double *', into)\n"
@@ -202,15 +203,15 @@ static const char DRIVER[] =
     "        inertia = several(27, 6), state = several(33, 16), joints = joints },\n"
     "        inputs))\n"
     "    if answer == nil then return end\n"
-    "    if type(answer) ~= 'table' then error('control must return a table or nothing', 0) end\n"
+    "    if type(answer) ~= 'table' then error(tr'control must return a table or nothing', 0) end\n"
     "    local unknown\n"
     "    for key in next, answer do\n"
     "        local word = not known[key] and text(key)\n"
     "        if word and (not unknown or word < unknown) then unknown = word end\n"
     "    end\n"
     "    if unknown then\n"
-    "        error(\"control returned the unknown key '\" .. unknown ..\n"
-    "              \"'; allowed are force, torque, phase, hold, steer, state, motor\", 0)\n"
+    "        error(string.format(tr(\"control returned the unknown key '%s'; \" ..\n"
+    "              'allowed are force, torque, phase, hold, steer, state, motor'), unknown), 0)\n"
     "    end\n"
     "    take(answer.force, 'force', into, 0)\n"
     "    take(answer.torque, 'torque', into, 3)\n"
@@ -220,16 +221,39 @@ static const char DRIVER[] =
     "    if answer.phase ~= nil then\n"
     "        if type(answer.phase) ~= 'number' or answer.phase % 1 ~= 0 or\n"
     "           math.abs(answer.phase) > 1e9 then\n"
-    "            error('control must return a whole number as phase', 0)\n"
+    "            error(tr'control must return a whole number as phase', 0)\n"
     "        end\n"
     "        into[6] = answer.phase\n"
     "    end\n"
     "    if answer.hold ~= nil and type(answer.hold) ~= 'string' then\n"
-    "        error('control must return a text as hold', 0)\n"
+    "        error(tr'control must return a text as hold', 0)\n"
     "    end\n"
     "    return answer.hold\n"
     "end\n"
     "return seal, bind, walk, control\n";
+
+/* What it says, for the catalogue of texts. Values stay in the order of English: Lua has no %2$s. */
+static const char *const said[] __attribute__((unused)) = {
+    TR("string.format knows no %p: addresses differ from run to run"), TR("pairs needs a table, not %s"),
+    TR("pairs has no order for a key that is a %s; allowed are numbers, texts, true and false"),
+    TR("unknown name '%s'"),
+    TR("assignment to the global '%s': write local; from one time to the next %s is remembered"),
+    TR("%s must return three numbers"), TR("control must return a %s of three numbers"),
+    TR("control must return a state of at most 16 numbers"), TR("body has no joint '%s'; it has %s"),
+    TR("none"),
+    TR("control must return a motor as { NAME = number }"),
+    TR("body has no '%s'; it has position, orientation, velocity, angular_velocity, contact_force, "
+       "contact_torque, mass, inertia, phase, phase_time, step, steer, state and joints"),
+    TR("control must return a table or nothing"),
+    TR("control returned the unknown key '%s'; allowed are force, torque, phase, hold, steer, state, motor"),
+    TR("control must return a whole number as phase"), TR("control must return a text as hold")
+};
+
+static int translate(lua_State *lua)
+{
+    lua_pushstring(lua, tobi_text(luaL_checkstring(lua, 1)));
+    return 1;
+}
 
 static void *allocate(void *user, void *p, size_t old, size_t size)
 {
@@ -390,7 +414,8 @@ static int load_protected(lua_State *lua)
 
     if (luaL_loadbufferx(lua, DRIVER, sizeof DRIVER - 1, "=driver", "t")) return lua_error(lua);
     lua_pushvalue(lua, user);
-    lua_call(lua, 1, 4);
+    lua_pushcfunction(lua, translate);
+    lua_call(lua, 2, 4);
     s->control = luaL_ref(lua, LUA_REGISTRYINDEX);
     s->walk = luaL_ref(lua, LUA_REGISTRYINDEX);
 
@@ -403,7 +428,7 @@ static int load_protected(lua_State *lua)
     bind_functions(lua, s, user, bind);
     lua_pushvalue(lua, seal);
     lua_pushstring(lua, s->job->role == TOBI_CONTROL_SCRIPT
-                        ? "only phase, steer and state, which control returns," : "nothing");
+                        ? tr("only phase, steer and state, which control returns,") : tr("nothing"));
     lua_call(lua, 1, 0);
     return 0;
 }

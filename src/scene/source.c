@@ -100,6 +100,31 @@ static const char *hint_at(const tobi_source *source, size_t size, const json_er
     return hint_at_line(source->text, size, mistake->line);
 }
 
+/* What jansson says in front of the piece of text that it names, for the catalogue. */
+static const char *const json_faults[] __attribute__((unused)) = {
+    TR("'}' expected"), TR("']' expected"), TR("':' expected"), TR("string or '}' expected"),
+    TR("unexpected newline"), TR("premature end of input"), TR("invalid token"), TR("unexpected token"),
+    TR("invalid escape"), TR("end of file expected"), TR("duplicate object key"), TR("too big integer"),
+    TR("too big negative integer"), TR("real number overflow"), TR("maximum parsing depth reached"),
+    TR("'[' or '{' expected"), TR("unable to decode byte")
+};
+
+/* What jansson says, "string or '}' expected near 'spacing'", in the user's language. */
+static void say_fault(const char *said, char text[TOBI_NOTE])
+{
+    static const char near[] = " near ", byte[] = "unable to decode byte";
+    char fault[TOBI_NOTE];
+    const char *end = strstr(said, near);
+    const int decodes = strncmp(said, byte, strlen(byte)) == 0;
+    const int length = decodes ? (int)strlen(byte) : end ? (int)(end - said) : (int)strlen(said);
+    snprintf(fault, sizeof fault, "%.*s", length, said);
+    if (tr(fault) == fault || decodes || !end)
+        snprintf(text, TOBI_NOTE, "%s%s", tr(fault), said + strlen(fault));
+    else if (strcmp(end, " near end of file") == 0)
+        snprintf(text, TOBI_NOTE, tr("%s near end of file"), tr(fault));
+    else snprintf(text, TOBI_NOTE, tr("%s near %s"), tr(fault), end + strlen(near));
+}
+
 enum { DEPTH_LIMIT = 32 };
 
 /* The steps of a place from the root down; deeper ones than the limit are dropped. */
@@ -374,9 +399,11 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
     json_error_t mistake;
     source->root = json_loadb(source->text, size, 0, &mistake);
     if (!source->root) {
+        char fault[TOBI_NOTE];
+        say_fault(mistake.text, fault);
         tobi_report_add(report, 0, "%s:%d:%d: not valid JSON: %s%s", name,
                         mistake.line > 0 ? mistake.line : 1,
-                        mistake.column > 0 ? mistake.column : 1, mistake.text,
+                        mistake.column > 0 ? mistake.column : 1, fault,
                         hint_at(source, size, &mistake));
         return TOBI_INVALID;
     }

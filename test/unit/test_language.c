@@ -1,8 +1,11 @@
 /* The language of messages: of the whole process, looked up where a text is filled in. */
 #include "mistakes.h"
 #include "scene_text.h"
+#include "tobiuo/motion.h"
 #include "tobiuo/tobiuo.h"
 #include <errno.h>
+#include <stdio.h>
+#include <unistd.h>
 
 static void choose(const char *name) { assert_int_equal(tobi_set_language(name, NULL), TOBI_OK); }
 
@@ -62,6 +65,34 @@ static void test_errors_with_values_in_another_order(void **state)
     assert_string_equal(tobi_reason(ENOSPC), "No space left on device");
 }
 
+/* What other libraries say: of JSON by what they can say, of Lua by our own side of it. */
+static void test_other_languages(void **state)
+{
+    (void)state;
+    static const char *const wrong[][2] = {
+        { "{ \"spacing\": 0.1, \"cfl\" 0.2 }", "s.json:1:27: JSONとして正しくない：':'が必要である（'0.2'の付近）" },
+        { "{ \"spacing\": 0.1, }", "s.json:1:19: JSONとして正しくない：文字列または'}'が必要である（'}'の付近）。"
+          "その前のコンマを取り除く" },
+        { "{ \"spacing\": 0.1", "s.json:1:16: JSONとして正しくない：'}'が必要である（ファイルの終わり）" },
+    };
+    choose("ja");
+    for (size_t k = 0; k < sizeof wrong/sizeof *wrong; k++) expect_mistakes(wrong[k][0], &wrong[k][1], 1);
+    tobi_motion *motion = NULL;
+    tobi_error err;
+    FILE *file = fopen("wrong.lua", "w");
+    assert_non_null(file);
+    fputs("function place(t)\n    return foldd, 0, 0\nend\n", file);
+    fclose(file);
+    assert_int_equal(tobi_motion_script("wrong.lua", NULL, &motion, &err), TOBI_OK);
+    unlink("wrong.lua");
+    const double x[1][3] = { { 0, 0, 0 } };
+    double moved[1][3];
+    assert_int_equal(tobi_motion_positions(motion, 0, 1, x, moved, &err), TOBI_SCRIPT);
+    assert_non_null(strstr(err.text, "wrong.lua:2: 未知の名前'foldd'である"));
+    tobi_motion_free(motion);
+    choose("en");
+}
+
 static void test_notes(void **state)
 {
     (void)state;
@@ -110,6 +141,7 @@ int main(void)
         cmocka_unit_test(test_wrong_names_are_refused),
         cmocka_unit_test(test_mistakes_of_a_scene),
         cmocka_unit_test(test_errors_with_values_in_another_order),
+        cmocka_unit_test(test_other_languages),
         cmocka_unit_test(test_notes),
         cmocka_unit_test(test_cut_letters),
     };
