@@ -9,12 +9,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The letters of the window are those of English; what has others, such as an error in Japanese, goes to the
+   terminal. */
 void viewer_note(viewer *v, const char *format, ...)
 {
+    int drawn = 1;
     va_list args;
     va_start(args, format);
     vsnprintf(v->note, sizeof v->note, format, args);
     va_end(args);
+    for (const char *c = v->note; *c; c++) drawn &= (unsigned char)*c < 0x80;
+    if (!drawn && v->screen) {
+        complain("%s", v->note);
+        snprintf(v->note, sizeof v->note, "told on the terminal");
+    }
     v->changed = 1;
 }
 

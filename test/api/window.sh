@@ -104,6 +104,11 @@ for k in 1 2; do
 done
 differ picture foam_1.png foam_2.png "foam"
 
+# What its letters cannot draw goes to the terminal.
+cp -r plain 結果
+timeout 60 "$program" view 結果 --size 800x450 --keys "sq" > out.txt 2> err.txt
+check "a path in Japanese" grep -q "結果/window_1.png" err.txt
+
 # So it is in the window of a run, of outputs that have it; by real keys, when it is made.
 "$program" run splash.json --out live --quiet --window > out.txt 2> err.txt &
 runner=$!
