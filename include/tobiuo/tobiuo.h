@@ -187,7 +187,8 @@ TOBI_API const char *tobi_world_scalar_flow(const tobi_world *world, int number,
 TOBI_API tobi_status tobi_world_set_gravity_in_time(tobi_world *world, const tobi_gravity_def *def,
                                                     tobi_error *err);
 /* Before the start. A force towards a place; TOBI_INVALID for numbers out of range and, at the start, for a
-   periodic domain, where the force would jump; then TOBI_UNSUPPORTED in mlsmpm. Energies leave it out. */
+   periodic domain, where the force would jump; then TOBI_UNSUPPORTED in mlsmpm. Energies leave it out;
+   field_power has what it gives bodies. */
 TOBI_API tobi_status tobi_world_set_central_force(tobi_world *world, const tobi_central_def *def,
                                                   tobi_error *err);
 /* Before the start. All of the world is seen from a frame that moves, by a rigid motion from the pose of time

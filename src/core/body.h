@@ -42,8 +42,9 @@ enum { TOBI_DRY, TOBI_WET, TOBI_WET_GAP, TOBI_BURIED };
 #define TOBI_THICK 1.8
 
 /* What does work on a body: fluids and solids; what touches it; its motion; its force, torque and control
-   program. */
-enum { TOBI_BY_PARTICLES, TOBI_BY_CONTACT, TOBI_BY_MOTION, TOBI_BY_FORCE, TOBI_POWERS };
+   program; its air resistance; what acts besides gravity. Run states have them by their numbers. */
+enum { TOBI_BY_PARTICLES, TOBI_BY_CONTACT, TOBI_BY_MOTION, TOBI_BY_FORCE, TOBI_BY_AIR, TOBI_BY_FIELD,
+       TOBI_POWERS };
 
 typedef struct tobi_body {
     char name[64];

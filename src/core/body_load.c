@@ -79,6 +79,8 @@ void tobi_body_find_power(tobi_body *b, double dt)
                                 b->touch_power;
     b->power[TOBI_BY_MOTION] = driven ? -by_particles : b->swimmer ? find_swimming(b, shape, dt) : 0;
     b->power[TOBI_BY_FORCE] = vec3_dot(b->rigid.given, mean) + vec3_dot(b->rigid.given + 3, mean + 3);
+    b->power[TOBI_BY_AIR] = vec3_dot(b->rigid.air, mean) + vec3_dot(b->rigid.air + 3, mean + 3);
+    b->power[TOBI_BY_FIELD] = vec3_dot(b->rigid.inertial, mean) + vec3_dot(b->rigid.inertial + 3, mean + 3);
 }
 
 /* What is rounding alone in 2-D: the force along z and the torques about x and y. */

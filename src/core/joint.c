@@ -233,6 +233,13 @@ void tobi_joint_drift(tobi_rigid *r, double dt)
     tobi_joint_place(r, 0.5*dt*(rate + keep*(rate + dt*pull)) + dt*joined + vec3_dot(j->axis, push));
 }
 
+/* A load along the coordinate: a force on a guide, a torque on a hinge. */
+static void feel_air(tobi_rigid *r, double load, const double S[6])
+{
+    const int hinge = r->joint.kind == TOBI_JOINT_HINGE;
+    for (int a = 0; a < 6; a++) r->air[a] = hinge == (a >= 3) ? load*S[a] : 0;
+}
+
 /* Velocity Verlet alone; a liquid's drift took the pull where it began, and contact has none. */
 void tobi_joint_kick(tobi_rigid *r, double dt, const double impulse[6], const double damped[6])
 {
@@ -245,6 +252,7 @@ void tobi_joint_kick(tobi_rigid *r, double dt, const double impulse[6], const do
                  rate = tobi_joint_rate(r) + change, keep = tobi_rigid_keep(r, dt);
     const double share = j->damping > 0 ? j->damping/(j->damping + j->mass*r->air_resistance) : 0;
     j->damped = share*j->mass*(1 - keep)*rate;
+    feel_air(r, dt > 0 ? -(1 - share)*j->mass*(1 - keep)*rate/dt : 0, S);
     tobi_joint_set_rate(r, keep*rate);
 }
 

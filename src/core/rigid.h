@@ -46,6 +46,7 @@ typedef struct tobi_rigid {
     double inertial[6];              /* N, N m about the centre: of what acts besides gravity           */
     double given[6];                 /* N, N m about the centre: by force, torque and control program, in the
                                         last step                                                       */
+    double air[6];                   /* N, N m about the centre: of air resistance in the last step     */
     int deforms;                     /* 1: a swimmer, which drifts by `moments`                         */
     double moments[3][3];            /* kg m2, rest axes: sum of m y0 y1^T, places about the centre at both
                                         ends of the step                                                */

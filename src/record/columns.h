@@ -109,6 +109,16 @@
       "Given to liquids since the start by what temperature and concentration change of their weight, " \
       "where they do.")
 
+/* The same with bodies that feel air, and with those that a frame, gravity in time or a central force
+   moves. */
+#define HISTORY_AIR(H) \
+    H("air_work", "J", real, tobi_works_bodies(run, TOBI_BY_AIR), \
+      "Done on bodies by their air_resistance since the start, below 0; where there is any.")
+#define HISTORY_FIELD(H) \
+    H("field_work", "J", real, tobi_works_bodies(run, TOBI_BY_FIELD), \
+      "Done on bodies since the start by what acts besides gravity: a frame that moves, gravity in time, a " \
+      "central force; where there is any.")
+
 /* B(name, unit, value, meaning): bodies.csv after time and name, all real; V3 for a vector. An empty meaning:
    that of the column before. Means are over the time since the last output. */
 #define V3(B, name, unit, v, doc) \
@@ -153,10 +163,17 @@
     B("force_work", "J", work[TOBI_BY_FORCE], \
       "Done on it by force and torque of the scene and by those of its control program since the start.")
 
-/* The last columns of bodies.csv, which it has in 2-D alone. */
+/* The last columns of bodies.csv: those of 2-D, those of air resistance, those of a frame and the like. */
 #define BODY_2D(B) \
     B("angle", "degrees", run->works.angle[k]*180/acos(-1), \
       "Turn since the rest pose, counterclockwise, with whole turns; in 2-D.")
+#define BODY_AIR(B) \
+    B("air_work", "J", work[TOBI_BY_AIR], \
+      "Done on it by its air_resistance since the start, below 0; where there is any.")
+#define BODY_FIELD(B) \
+    B("field_work", "J", work[TOBI_BY_FIELD], \
+      "Done on it since the start by a frame that moves, gravity in time and a central force; where there " \
+      "is any.")
 
 /* S(name, unit, value, meaning): solids.csv after time and name, likewise. */
 #define SOLID(S) \

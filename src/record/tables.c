@@ -81,13 +81,14 @@ tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continue
 }
 
 #define H(name, unit, kind, value, doc) { name, NULL },
-static const tobi_csv_column history_columns[] = { HISTORY(H) HISTORY_POROUS(H) HISTORY_BUOYANCY(H) };
+static const tobi_csv_column history_columns[] = {
+    HISTORY(H) HISTORY_POROUS(H) HISTORY_BUOYANCY(H) HISTORY_AIR(H) HISTORY_FIELD(H) };
 enum { HISTORY_COLUMNS = sizeof history_columns/sizeof *history_columns };
 #undef H
 #define B(name, unit, value, doc) { name, NULL },
-static const tobi_csv_column body_columns[] = { { "time", NULL }, { "name", NULL }, BODY(B) BODY_2D(B) };
-static const tobi_csv_column flat_columns[] = { BODY_2D(B) };
-enum { FLAT = sizeof flat_columns/sizeof *flat_columns };
+static const tobi_csv_column body_columns[] = {
+    { "time", NULL }, { "name", NULL }, BODY(B) BODY_2D(B) BODY_AIR(B) BODY_FIELD(B) };
+enum { BODY_COLUMNS = sizeof body_columns/sizeof *body_columns };
 #undef B
 
 #define S(name, unit, value, doc) { name, NULL },
@@ -95,12 +96,13 @@ static const tobi_csv_column solid_columns[] = { { "time", NULL }, { "name", NUL
 #undef S
 
 #define H(name, unit, kind, value, doc) { name, unit, doc },
-static const tobi_column history[] = { HISTORY(H) HISTORY_POROUS(H) HISTORY_BUOYANCY(H) };
+static const tobi_column history[] = {
+    HISTORY(H) HISTORY_POROUS(H) HISTORY_BUOYANCY(H) HISTORY_AIR(H) HISTORY_FIELD(H) };
 #undef H
 #define B(name, unit, value, doc) { name, unit, doc },
 static const tobi_column body[] = {
     { "time", "s", "Simulated time." }, { "name", "text", "Name of the body." }, BODY(B)
-    BODY_2D(B) };
+    BODY_2D(B) BODY_AIR(B) BODY_FIELD(B) };
 #undef B
 #define S(name, unit, value, doc) { name, unit, doc },
 static const tobi_column solid[] = {
@@ -170,25 +172,52 @@ static bool has_buoyancy(const tobi_run *run)
     return has;
 }
 
-/* The last two columns are of worlds that have what they tell. */
-static tobi_status open_history(tobi_run *run, bool continued, double last, tobi_error *err)
+static bool is_flat(const tobi_run *run) { return run->world->sim.def.dimension == 2; }
+
+static bool has_air(const tobi_run *run)
 {
-    tobi_csv_column columns[HISTORY_COLUMNS];
-    int count = HISTORY_COLUMNS - 2;
-    memcpy(columns, history_columns, sizeof columns);
-    if (has_zones(run)) columns[count++] = history_columns[HISTORY_COLUMNS - 2];
-    if (has_buoyancy(run)) columns[count++] = history_columns[HISTORY_COLUMNS - 1];
-    return tobi_table_open(run, "history.csv", continued, last, columns, count, &run->history, err);
+    bool has = false;
+    for (int k = 0; k < tobi_world_body_count(run->world); k++) {
+        const tobi_rigid *r = &run->world->sim.bodies[k].rigid;
+        has |= r->kind != TOBI_PRESCRIBED && r->air_resistance > 0;
+    }
+    return has;
+}
+
+static bool has_field(const tobi_run *run)
+{
+    bool moves = false;
+    for (int k = 0; k < tobi_world_body_count(run->world); k++)
+        moves |= run->world->sim.bodies[k].rigid.kind != TOBI_PRESCRIBED;
+    return run->world->drive && moves;
+}
+
+/* The last columns are of worlds that have what they tell. */
+typedef bool has_column(const tobi_run *run);
+static has_column *const history_has[] = { has_zones, has_buoyancy, has_air, has_field };
+static has_column *const body_has[] = { is_flat, has_air, has_field };
+
+static int choose_columns(const tobi_run *run, const tobi_csv_column *all, int count,
+                          has_column *const *has, int last, tobi_csv_column *out)
+{
+    int chosen = count - last;
+    memcpy(out, all, (size_t)chosen*sizeof *out);
+    for (int k = 0; k < last; k++)
+        if (has[k](run)) out[chosen++] = all[count - last + k];
+    return chosen;
 }
 
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
 {
     const double last = continued ? tobi_record_time(run, run->outputs - 1) : 0;
-    const int flat = run->world->sim.def.dimension == 2;
-    TOBI_TRY(open_history(run, continued, last, err));
+    tobi_csv_column of_run[HISTORY_COLUMNS], of_bodies[BODY_COLUMNS];
+    const int of_history = choose_columns(run, history_columns, HISTORY_COLUMNS, history_has,
+                                          sizeof history_has/sizeof *history_has, of_run);
+    const int each = choose_columns(run, body_columns, BODY_COLUMNS, body_has,
+                                    sizeof body_has/sizeof *body_has, of_bodies);
+    TOBI_TRY(tobi_table_open(run, "history.csv", continued, last, of_run, of_history, &run->history, err));
     if (tobi_world_body_count(run->world) > 0)
-        TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, last, body_columns,
-                            tables[TOBI_TABLE_BODIES].count - (flat ? 0 : FLAT), &run->bodies, err));
+        TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, last, of_bodies, each, &run->bodies, err));
     if (run->world->sim.soft.solids)
         TOBI_TRY(tobi_table_open(run, "solids.csv", continued, last, solid_columns,
                             tables[TOBI_TABLE_SOLIDS].count, &run->solids, err));
@@ -212,7 +241,9 @@ static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *e
         tobi_csv_add_text(run->bodies, tobi_world_body_name(run->world, k));
 #define B(name, unit, value, doc) tobi_csv_add_real(run->bodies, value);
         BODY(B)
-        if (run->world->sim.def.dimension == 2) { BODY_2D(B) }
+        if (is_flat(run)) { BODY_2D(B) }
+        if (has_air(run)) { BODY_AIR(B) }
+        if (has_field(run)) { BODY_FIELD(B) }
 #undef B
         TOBI_TRY(tobi_csv_take_row(run->bodies, rows, err));
     }
@@ -251,6 +282,8 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
     HISTORY(H)
     if (has_zones(run)) { HISTORY_POROUS(H) }
     if (has_buoyancy(run)) { HISTORY_BUOYANCY(H) }
+    if (has_air(run)) { HISTORY_AIR(H) }
+    if (has_field(run)) { HISTORY_FIELD(H) }
 #undef H
     return tobi_csv_take_row(run->history, &snapshot->history, err);
 }

@@ -108,8 +108,11 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
     for (int a = 0; a < 3; a++) {
         double dv = dt*(d->world.gravity[a] + (force[a] + mean.force[a])/r->mass) + impulse[a]/r->mass;
         if (!r->joint.kind) {
+            const double momentum = r->momentum[a] + dt*(torque[a] + mean.torque[a]) + impulse[3 + a];
+            r->air[a] = dt > 0 ? (keep - 1)*r->mass*(r->velocity[a] + dv)/dt : 0;
+            r->air[3 + a] = dt > 0 ? (keep - 1)*momentum/dt : 0;
             r->velocity[a] = keep*(r->velocity[a] + dv);
-            r->momentum[a] = keep*(r->momentum[a] + dt*(torque[a] + mean.torque[a]) + impulse[3 + a]);
+            r->momentum[a] = keep*momentum;
         }
         r->contact_force[a] = r->impulse[a]/span;
         r->contact_torque[a] = r->twist[a]/span;

@@ -10,7 +10,8 @@
 static tobi_body_energy find_energy(const tobi_world *w, const tobi_body *b)
 {
     tobi_body_energy e = { .power = b->power[TOBI_BY_PARTICLES], .contact_power = b->power[TOBI_BY_CONTACT],
-                           .motion_power = b->power[TOBI_BY_MOTION], .force_power = b->power[TOBI_BY_FORCE] };
+                           .motion_power = b->power[TOBI_BY_MOTION], .force_power = b->power[TOBI_BY_FORCE],
+                           .air_power = b->power[TOBI_BY_AIR], .field_power = b->power[TOBI_BY_FIELD] };
     if (b->rigid.kind == TOBI_PRESCRIBED) return e;
     e.kinetic = tobi_rigid_kinetic_energy(&b->rigid);
     for (int a = 0; a < w->sim.def.dimension; a++)
@@ -27,6 +28,8 @@ void tobi_energy_sum_bodies(const tobi_world *w, tobi_energy *sum)
         sum->potential += e.potential;
         sum->motion_power += e.motion_power;
         sum->force_power += e.force_power;
+        sum->air_power += e.air_power;
+        sum->field_power += e.field_power;
     }
 }
 

@@ -44,7 +44,7 @@ static const double middle[3] = { 2, 2, 2 };
 /* Energies, and the work of all steps since `start`. */
 typedef struct ledger {
     tobi_energy now, start;
-    double joints, lines, motions, forces, work, contact, given;
+    double joints, lines, motions, forces, work, contact, given, air, field;
 } ledger;
 
 static void open_ledger(ledger *l, tobi_world *w)
@@ -66,6 +66,8 @@ static void follow(ledger *l, tobi_world *w, double until)
         l->lines += info.dt*l->now.line_power;
         l->motions += info.dt*l->now.motion_power;
         l->forces += info.dt*l->now.force_power;
+        l->air += info.dt*l->now.air_power;
+        l->field += info.dt*l->now.field_power;
         l->given += info.dt*b.force_power;
         l->work += info.dt*b.power;
         l->contact += info.dt*b.contact_power;
@@ -207,6 +209,115 @@ static void the_work_of_forces_is_the_energy_gained(void **state)
                      gain_of(&l), l.forces, l.contact, wrong);
         tobi_world_destroy(w);
     }
+}
+
+/* A body that falls from rest, and turns, in air: v = (g/k)(1 - e), e = exp(-k t), and its turn decays by
+   itself. */
+static void air_takes_what_a_body_loses(void **state)
+{
+    (void)state;
+    for (int dimension = 2; dimension <= 3; dimension++) {
+        const double k = 3, t = 0.5, e = exp(-k*t), place[3] = { 2, 3, 3 };
+        tobi_world *w = open_world(dimension, 10, 1e-4);
+        tobi_body_def def = make_brick(dimension, place);
+        ledger l;
+        tobi_body_info i;
+        def.air_resistance = k;
+        def.angular_velocity[2] = 4;
+        OK(tobi_world_add_body(w, &def, &err));
+        open_ledger(&l, w);
+        OK(tobi_world_body(w, 0, &i));
+        follow(&l, w, t);
+        const double square = t - 2*(1 - e)/k + (1 - e*e)/(2*k), turn = 0.5*i.inertia[8]*16*(1 - e*e);
+        const double expected = -i.mass*k*(10/k)*(10/k)*square - turn;
+        if (fabs(l.air/expected - 1) > 3e-4)
+            fail_msg("%d-D: air gave %g J, not %g", dimension, l.air, expected);
+        if (fabs(gain_of(&l) - l.air) > 1e-9*fabs(l.air))
+            fail_msg("%d-D: lost %.12g J, air gave %.12g", dimension, gain_of(&l), l.air);
+        assert_true(l.field == 0 && l.forces == 0 && l.contact == 0);
+        tobi_world_destroy(w);
+    }
+}
+
+/* A pendulum with a hinge of its own, damped and not; a slide on a guide. */
+static void air_takes_what_a_joint_loses(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 3; n++) {
+        tobi_world *w = open_world(3, 10, 1e-4);
+        tobi_body_def def = make_brick(3, middle);
+        ledger l;
+        def.air_resistance = 2;
+        if (n == 2) {
+            def.guide_axis[0] = 0.6, def.guide_axis[2] = 0.8;
+        } else {
+            def.hinge_axis[1] = 1;
+            memcpy(def.hinge_point, middle, sizeof middle);
+            def.hinge_point[0] -= 0.5;
+            def.hinge_damping = n == 1 ? 3 : 0;
+        }
+        OK(tobi_world_add_body(w, &def, &err));
+        open_ledger(&l, w);
+        follow(&l, w, 0.4);
+        assert_true(l.air < -0.05*l.now.kinetic && (l.joints > 0.05*l.now.kinetic) == (n == 1));
+        if (fabs(gain_of(&l) - l.air + l.joints) > 5e-4*fabs(l.air))
+            fail_msg("case %d: lost %g J, air gave %g, the damper took %g", n, gain_of(&l), l.air, l.joints);
+        tobi_world_destroy(w);
+    }
+}
+
+/* Without gravity: from rest at r it swings as r cos(w t), and has m w^2/2 (r^2 - x^2). */
+static void a_central_force_gives_what_a_body_gains(void **state)
+{
+    tobi_world *w = open_world(3, 0, 1e-4);
+    tobi_body_def def = make_brick(3, middle);
+    tobi_central_def centre = { .centre = { 1.2, 2, 2 }, .rate = 2 };
+    ledger l;
+    tobi_body_info i;
+    (void)state;
+    OK(tobi_world_set_central_force(w, &centre, &err));
+    OK(tobi_world_add_body(w, &def, &err));
+    open_ledger(&l, w);
+    follow(&l, w, 0.6);
+    OK(tobi_world_body(w, 0, &i));
+    const double speed = 0.8*2*sin(1.2), expected = 0.5*i.mass*speed*speed;
+    if (fabs(l.field/expected - 1) > 1e-3) fail_msg("the force gave %g J, not %g", l.field, expected);
+    if (fabs(gain_of(&l) - l.field) > 1e-9*l.field) fail_msg("gained %g J of %g", gain_of(&l), l.field);
+    tobi_world_destroy(w);
+}
+
+static tobi_status rock(void *user, double t, int64_t n, const double (*rest)[3], double (*position)[3],
+                        tobi_error *error)
+{
+    const double angle = 0.3*(1 - cos(4*t));
+    (void)user;
+    (void)error;
+    for (int64_t i = 0; i < n; i++) {
+        const double x = rest[i][0] - 1, z = rest[i][2] - 1;
+        position[i][0] = 1 + cos(angle)*x + sin(angle)*z;
+        position[i][1] = rest[i][1];
+        position[i][2] = 1 - sin(angle)*x + cos(angle)*z;
+    }
+    return TOBI_OK;
+}
+
+/* Free in a frame that rocks, with gravity and air: what it gains is what they give; in the domain's axes. */
+static void a_rocking_frame_gives_what_a_body_gains(void **state)
+{
+    tobi_world *w = open_world(3, 10, 1e-4);
+    tobi_body_def def = make_brick(3, middle);
+    ledger l;
+    (void)state;
+    def.air_resistance = 0.5;
+    def.angular_velocity[0] = 1;
+    OK(tobi_world_set_frame(w, rock, NULL, &err));
+    OK(tobi_world_add_body(w, &def, &err));
+    open_ledger(&l, w);
+    follow(&l, w, 0.5);
+    assert_true(fabs(l.field) > 0.05*l.now.kinetic && l.air < 0);
+    if (fabs(gain_of(&l) - l.field - l.air) > 1e-4*fabs(l.field))
+        fail_msg("gained %.9g J, the frame gave %.9g, air %.9g", gain_of(&l), l.field, l.air);
+    tobi_world_destroy(w);
 }
 
 /* A guide with a spring along gravity, without and with a damper, from where the spring is at rest: first it
@@ -409,6 +520,10 @@ int main(void)
         cmocka_unit_test(contact_takes_what_a_body_loses),
         cmocka_unit_test(the_work_of_a_motor_is_the_energy_gained),
         cmocka_unit_test(the_work_of_forces_is_the_energy_gained),
+        cmocka_unit_test(air_takes_what_a_body_loses),
+        cmocka_unit_test(air_takes_what_a_joint_loses),
+        cmocka_unit_test(a_central_force_gives_what_a_body_gains),
+        cmocka_unit_test(a_rocking_frame_gives_what_a_body_gains),
         cmocka_unit_test(a_spring_pendulum_keeps_its_energy_but_for_the_damper),
         cmocka_unit_test(lines_and_hinges_keep_energy_too),
         cmocka_unit_test(a_catenary_has_the_energy_of_its_pulls),
