@@ -6,10 +6,29 @@
 
 void tobi_texts_sort(void);
 const char *tobi_texts_find(const char *text) __attribute__((format_arg(1)));
+void tobi_page_texts_sort(void);
+const char *tobi_page_texts_find(const char *text);
 
 static int is_japanese;
 
 const char *tobi_text(const char *english) { return is_japanese ? tobi_texts_find(english) : english; }
+
+/* [text](page.md) becomes text, and lines become one. */
+const char *tobi_meaning(const char *english, char room[TOBI_MEANING])
+{
+    const char *found = is_japanese ? tobi_page_texts_find(english) : english, *end = NULL;
+    size_t used = 0;
+    if (found == english) return tobi_text(english);
+    for (const char *c = found; *c && used + 1 < TOBI_MEANING; c++) {
+        const char *close = *c == '[' ? strchr(c, ']') : NULL;
+        if (close && close[1] == '(' && strchr(close, ')')) end = close;
+        else if (c == end) c = strchr(c, ')');
+        else if (*c != '\n') room[used++] = *c;
+    }
+    room[used] = '\0';
+    tobi_text_mend(room);
+    return room;
+}
 
 tobi_status tobi_set_language(const char *name, tobi_error *err)
 {
@@ -17,7 +36,7 @@ tobi_status tobi_set_language(const char *name, tobi_error *err)
     const int ja = strcmp(name, "ja") == 0;
     if (!ja && strcmp(name, "en") != 0)
         return tobi_fail(err, TOBI_INVALID, "there is no language '%.40s'; allowed are en and ja", name);
-    if (ja) tobi_texts_sort();
+    if (ja) tobi_texts_sort(), tobi_page_texts_sort();
     is_japanese = ja;
     return TOBI_OK;
 }

@@ -113,6 +113,11 @@ void tobi_bind_limits(const tobi_param *row, char *text, size_t size)
     say_limits(row, keep_english, text, size);
 }
 
+void tobi_bind_say_limits(const tobi_param *row, char *text, size_t size)
+{
+    say_limits(row, tobi_text, text, size);
+}
+
 void tobi_bind_default(const tobi_param *row, char *text, size_t size)
 {
     int length = 0;
@@ -149,7 +154,7 @@ typedef struct slot {
 static void report_kind(const slot *s, const char *must)
 {
     char limits[TOBI_NOTE];
-    say_limits(s->row, tobi_text, limits, sizeof limits);
+    tobi_bind_say_limits(s->row, limits, sizeof limits);
     const char *shown = json_string_value(s->value);
     if (s->row->type == TOBI_PARAM_BOOL)
         tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s",
@@ -166,7 +171,7 @@ static int check_range(const slot *s, const tobi_place *place, double v)
 {
     if (is_allowed(s->row, v)) return 1;
     char limits[TOBI_NOTE];
-    say_limits(s->row, tobi_text, limits, sizeof limits);
+    tobi_bind_say_limits(s->row, limits, sizeof limits);
     tobi_source_mistake(s->binder->source, place, "is %.10g, allowed is %s", v, limits);
     return 0;
 }
@@ -271,7 +276,7 @@ static void bind_choice(const slot *s)
         list[i] = words[i];
     }
     char limits[TOBI_NOTE];
-    say_limits(s->row, tobi_text, limits, sizeof limits);
+    tobi_bind_say_limits(s->row, limits, sizeof limits);
     const char *near =
         word ? tobi_suggest(word, list, (size_t)(count < MOST ? count : MOST)) : NULL;
     if (near)
@@ -564,7 +569,7 @@ static void report_missing(const tobi_binder *binder, const tobi_param *row,
     snprintf(first, sizeof first, "%.*s", (int)(dot ? dot - row->key : 0), row->key);
     tobi_place outer = { place, first, 0 };
     tobi_place inner = { dot ? &outer : place, dot ? dot + 1 : row->key, 0 };
-    say_limits(row, tobi_text, limits, sizeof limits);
+    tobi_bind_say_limits(row, limits, sizeof limits);
     if (row->type == TOBI_PARAM_TEXT)
         tobi_source_mistake(binder->source, &inner, "is missing: %s", tr(row->doc));
     else

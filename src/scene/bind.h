@@ -36,6 +36,8 @@ int tobi_bind_has(const tobi_param_table *table, tobi_rows rows, const char *key
 /* The allowed values of a row in words: "2 to 4 spacings", "greater than 0 m", "slip or no-slip".
  */
 void tobi_bind_limits(const tobi_param *row, char *text, size_t size);
+/* The same in the language of messages. */
+void tobi_bind_say_limits(const tobi_param *row, char *text, size_t size);
 
 /* The default of a row as text: "0.4", "[0, 0, -9.81]", "slip"; "required" if it has none. */
 void tobi_bind_default(const tobi_param *row, char *text, size_t size);

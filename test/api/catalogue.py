@@ -2,7 +2,7 @@
 """The Japanese catalogues app/tobiuo/ja.po and src/ja.po: whether they have all that tr() is asked for.
 
 usage: catalogue.py LIBRARY [ROOT]      exit 1 with a line for each fault; 77 without python3-polib
-       catalogue.py --update [ROOT]    brings src/ja.po to the order of the sources, new texts without Japanese
+       catalogue.py --update LIBRARY [ROOT]    brings src/ja.po to the order of the sources, new texts without Japanese
 
 The texts of the program are those that its sources mark by tr("...") or TEXT("..."), and what the library says of
 itself: meanings and units of columns, stages of a step. Those of the library are the formats of its errors and
@@ -83,23 +83,33 @@ def stage_texts(root):
                     yield piece.group(1), "a stage"
 
 
-def column_texts(library):
-    """Of the columns that a report shows: not those of solids.csv, words, or the time."""
+def columns(library):
     c = ctypes.CDLL(library)
     c.tobi_run_column.restype = ctypes.POINTER(Column)
     c.tobi_run_unit.restype = ctypes.c_char_p
-    for table in set(range(TABLES)) - {SOLIDS}:
+    for table in range(TABLES):
         index = 0
         while c.tobi_run_column(table, index):
             column = c.tobi_run_column(table, index).contents
             index += 1
-            if column.unit == b"text" or column.name in (b"time", b"step"):
-                continue
-            for unit in {c.tobi_run_unit(column.unit, dimension).decode() for dimension in (2, 3)}:
-                if re.search(r"\bper\b|[a-z]{4}", unit):
-                    yield unit, "a unit"
-            if column.doc:
-                yield column.doc.decode(), f"column {column.name.decode()}"
+            yield column, {c.tobi_run_unit(column.unit, dimension).decode() for dimension in (2, 3)}, table
+
+
+def unit_texts(library):
+    """Of the columns that a report shows: not those of solids.csv, words, or the time."""
+    for column, units, table in columns(library):
+        if table == SOLIDS or column.unit == b"text" or column.name in (b"time", b"step"):
+            continue
+        for unit in units:
+            if re.search(r"\bper\b|[a-z]{4}", unit):
+                yield unit, "a unit"
+
+
+def column_texts(library):
+    """Meanings, which the report shows and `tobiuo describe` tells."""
+    for column, _, _ in columns(library):
+        if column.doc:
+            yield column.doc.decode(), f"column {column.name.decode()}"
 
 
 def complaints(root):
@@ -182,9 +192,9 @@ def main(library, root=pathlib.Path(__file__).parents[2]):
         return 77
     check_itself()
     root = pathlib.Path(root)
-    own = [*marked_texts(root / "app"), *complaints(root), *purposes(root), *column_texts(library), *stage_texts(root)]
+    own = [*marked_texts(root / "app"), *complaints(root), *purposes(root), *unit_texts(library), *stage_texts(root)]
     known = {entry.msgid for entry in polib.pofile(str(root / "src/ja.po"), encoding="utf-8")}
-    found = check_catalogue(polib, root, "src/ja.po", library_texts(root))
+    found = check_catalogue(polib, root, "src/ja.po", [*library_texts(root), *column_texts(library)])
     found += check_catalogue(polib, root, "app/tobiuo/ja.po", own, known)
     unmarked = list(unmarked_texts(root))
     print("\n".join(unmarked))
@@ -204,20 +214,21 @@ def check_catalogue(polib, root, name, pairs, elsewhere=()):
     return len(found)
 
 
-def update(root=pathlib.Path(__file__).parents[2]):
+def update(library, root=pathlib.Path(__file__).parents[2]):
     import polib
     path = str(pathlib.Path(root) / "src/ja.po")
     old = polib.pofile(path, encoding="utf-8", wrapwidth=110)
     known = {entry.msgid: entry.msgstr for entry in old}
     for entry in list(old):
         old.remove(entry)
-    for text in dict.fromkeys(text for text, _ in library_texts(pathlib.Path(root))):
+    texts = [*library_texts(pathlib.Path(root)), *column_texts(library)]
+    for text in dict.fromkeys(text for text, _ in texts):
         old.append(polib.POEntry(msgid=text, msgstr=known.get(text, "")))
     old.save(path)
     return 0
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (2, 3):
+    if len(sys.argv) not in (2, 3, 4):
         sys.exit(__doc__)
     sys.exit(update(*sys.argv[2:]) if sys.argv[1] == "--update" else main(*sys.argv[1:]))

@@ -52,6 +52,18 @@ says "my_dam/scene.jsonにdam_breakのシーンを書いた。計算するには
 check "its comments are Japanese" test "$(grep '//' my_dam/scene.json | grep -cE '壁|単位')" -ge 2
 expect 1 "水が水槽より高い" new dam_break high --water-height 3
 
+expect 0 "" describe
+check "each topic has its Japanese" test "$(grep -c '^  [a-z]' out.txt)" = \
+    "$(grep '^  [a-z]' out.txt | grep -cE 'の|る|用|列')"
+expect 0 "" describe fill
+says "      満たす箱の下の角。箱には両方の角が必要"
+says "ベクトル、単位m、許容範囲-1e7～1e7 m、既定値[0, 0, 0]"
+expect 0 "" describe mean_pressure_force_x
+says "mean_pressure_force_x：bodies.csvの列、単位N"
+expect 1 "'camra'という名前はない。もしかしてcamera？" describe camra
+"$program" describe scene > japanese.md
+check "the page of scenes stays English" grep -q "^# Scenes" japanese.md
+
 expect 0 "tobiuo: 注意：流体 'water': 密度が1 kg/m3" run tank.json --out out
 says "計算終了：t = 0.1 s"
 expect 1 "out：計算結果がある。何も変えていない" run tank.json --out out

@@ -5,6 +5,7 @@
 #include "tobiuo/tobiuo.h"
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 static void choose(const char *name) { assert_int_equal(tobi_set_language(name, NULL), TOBI_OK); }
@@ -112,6 +113,24 @@ static void test_notes(void **state)
     tobi_world_destroy(w);
 }
 
+/* Meanings of keys are those of the page of scenes, without what is for a page alone. */
+static void test_meanings(void **state)
+{
+    (void)state;
+    char room[TOBI_MEANING];
+    static const char name[] = "Name of the fluid, used once in a scene.";
+    assert_ptr_equal(tobi_meaning(name, room), name);
+    choose("ja");
+    assert_string_equal(tobi_meaning(name, room), "流体の名前。シーンの中で重複できない");
+    assert_string_equal(tobi_meaning("fluid", room), "流体");              /* of the messages */
+    char *topic = tobi_scene_describe("control");
+    assert_non_null(topic);
+    assert_non_null(strstr(topic, "（スクリプト）"));
+    assert_null(strstr(topic, "scripts.ja.md"));
+    free(topic);
+    choose("en");
+}
+
 /* A text that is longer than its room ends with a whole letter. */
 static void test_cut_letters(void **state)
 {
@@ -143,6 +162,7 @@ int main(void)
         cmocka_unit_test(test_errors_with_values_in_another_order),
         cmocka_unit_test(test_other_languages),
         cmocka_unit_test(test_notes),
+        cmocka_unit_test(test_meanings),
         cmocka_unit_test(test_cut_letters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

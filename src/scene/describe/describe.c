@@ -14,32 +14,35 @@
 
 void tobi_describe_row(FILE *out, const tobi_param *row)
 {
-    char limits[200], def[200];
-    tobi_bind_limits(row, limits, sizeof limits);
+    char limits[TOBI_NOTE], def[200], room[TOBI_MEANING];
+    tobi_bind_say_limits(row, limits, sizeof limits);
     tobi_bind_default(row, def, sizeof def);
-    fprintf(out, "  %s\n      %s\n      ", row->key, row->doc);
+    fprintf(out, "  %s\n      %s\n      ", row->key, tobi_meaning(row->doc, room));
     if (row->type == TOBI_PARAM_TEXT) fprintf(out, "%s; ", row->unit);
     else if (row->type == TOBI_PARAM_CHOICE || row->type == TOBI_PARAM_BOOL)
         fprintf(out, "%s; ", limits);
-    else fprintf(out, "%s, unit %s; allowed: %s; ", tobi_manual_type(row), row->unit, limits);
-    fprintf(out, row->required ? "%s\n" : "default: %s\n", def);
+    else fprintf(out, tr("%s, unit %s; allowed: %s; "), tr(tobi_manual_type(row)), row->unit, limits);
+    if (row->required) fprintf(out, "%s\n", tr("required"));
+    else fprintf(out, tr("default: %s\n"), def);
 }
 
 /* A key whose value has keys of its own; the topic that tells them is named. */
 void tobi_describe_part(FILE *out, const tobi_part *part)
 {
     const char *topic = part->form == TOBI_PART_MOTION ? "motion" : part->table ? part->table->name : NULL;
-    const char *kind = part->form == TOBI_PART_LIST ? "list of objects" :
-                       part->form == TOBI_PART_EDITOR ? "text" : "object";
-    fprintf(out, "  %s\n      %s\n      %s", part->key, part->doc, kind);
+    const char *kind = part->form == TOBI_PART_LIST ? tr("list of objects") :
+                       part->form == TOBI_PART_EDITOR ? tr("text") : tr("object");
+    char room[TOBI_MEANING];
+    fprintf(out, "  %s\n      %s\n      %s", part->key, tobi_meaning(part->doc, room), kind);
     if (topic) fprintf(out, ": tobiuo describe %s", topic);
-    fprintf(out, part->least > 0 ? "; required\n" : "\n");
+    fprintf(out, "%s\n", part->least > 0 ? tr("; required") : "");
 }
 
 static void describe_table(FILE *out, const tobi_param_table *table)
 {
     tobi_part part;
-    fprintf(out, "%s: %s\n", table->name, table->doc);
+    char room[TOBI_MEANING];
+    fprintf(out, "%s: %s\n", table->name, tobi_meaning(table->doc, room));
     for (const tobi_param *row = table->rows; row->key; row++) tobi_describe_row(out, row);
     for (int i = 0; tobi_part_at(i, &part); i++)
         if (strcmp(part.owner, table->name) == 0) tobi_describe_part(out, &part);
@@ -64,9 +67,9 @@ const tobi_param_table *tobi_describe_table_at(int index)
 
 /* Topics that are no single table of keys. */
 static const struct { const char *name, *doc; } more[] = {
-    { "motion", "The motion of a body: a script, or one by numbers." },
-    { "scene", "The whole page: every key of a scene, in Markdown." },
-    { "schema", "The JSON Schema of scenes, for editors." },
+    { "motion", TR("The motion of a body: a script, or one by numbers.") },
+    { "scene", TR("The whole page: every key of a scene, in Markdown.") },
+    { "schema", TR("The JSON Schema of scenes, for editors.") },
 };
 enum { MORE = sizeof more/sizeof *more };
 
@@ -95,9 +98,11 @@ const char *tobi_describe_topic(int index)
 static void list_topics(FILE *out)
 {
     const char *name, *doc;
-    fprintf(out, "Topics:\n");
-    for (int i = 0; (name = topic_at(i, &doc)); i++) fprintf(out, "  %-9s %s\n", name, doc);
-    fprintf(out, "Any key, field or column works as well: tobiuo describe camera\n");
+    char room[TOBI_MEANING];
+    fprintf(out, "%s\n", tr("Topics:"));
+    for (int i = 0; (name = topic_at(i, &doc)); i++)
+        fprintf(out, "  %-9s %s\n", name, tobi_meaning(doc, room));
+    fprintf(out, "%s\n", tr("Any key, field or column works as well: tobiuo describe camera"));
 }
 
 static const tobi_param_table *find_table(const char *topic)

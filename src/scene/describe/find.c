@@ -29,18 +29,24 @@ static int matches(const tobi_param_table *table, const char *key, const char *w
     return find_words(path, word) > 0;
 }
 
+static void print_head(FILE *out, const tobi_param_table *table, int found, char room[TOBI_MEANING])
+{
+    fprintf(out, "%s%s: %s\n", found ? "\n" : "", table->name, tobi_meaning(table->doc, room));
+}
+
 static int find_in_table(FILE *out, const tobi_param_table *table, const char *word, int found)
 {
     tobi_part part;
+    char room[TOBI_MEANING];
     int here = 0;
     for (const tobi_param *row = table->rows; row->key; row++) {
         if (!matches(table, row->key, word)) continue;
-        if (here++ == 0) fprintf(out, "%s%s: %s\n", found ? "\n" : "", table->name, table->doc);
+        if (here++ == 0) print_head(out, table, found, room);
         tobi_describe_row(out, row);
     }
     for (int i = 0; tobi_part_at(i, &part); i++) {
         if (strcmp(part.owner, table->name) != 0 || !matches(table, part.key, word)) continue;
-        if (here++ == 0) fprintf(out, "%s%s: %s\n", found ? "\n" : "", table->name, table->doc);
+        if (here++ == 0) print_head(out, table, found, room);
         tobi_describe_part(out, &part);
     }
     return here;
@@ -52,7 +58,8 @@ static int find_field(FILE *out, const char *word)
     int components;
     for (int i = 0; (name = tobi_world_field_name(i, &components, &unit)); i++) {
         if (strcmp(name, word) != 0) continue;
-        fprintf(out, "%s: field of particles for output.fields, %d component%s, unit %s\n", name, components,
+        fprintf(out, tr("%s: field of particles for output.fields, %d component%s, unit %s\n"), name,
+                components,
                 components == 1 ? "" : "s", unit);
         return 1;
     }

@@ -169,11 +169,11 @@ static void write_cell(FILE *out, const char *text)
 const char *tobi_manual_type(const tobi_param *row)
 {
     switch (row->type) {
-    case TOBI_PARAM_REAL: return "number";
-    case TOBI_PARAM_INT: return "whole number";
-    case TOBI_PARAM_VEC3: return row->positive ? "number or vector" : "vector";
-    case TOBI_PARAM_BOOL: return "true or false";
-    case TOBI_PARAM_CHOICE: return "word";
+    case TOBI_PARAM_REAL: return TR("number");
+    case TOBI_PARAM_INT: return TR("whole number");
+    case TOBI_PARAM_VEC3: return row->positive ? TR("number or vector") : TR("vector");
+    case TOBI_PARAM_BOOL: return TR("true or false");
+    case TOBI_PARAM_CHOICE: return TR("word");
     default:
         return strcmp(row->unit, "names") == 0           ? "list of names"
                : strcmp(row->unit, "points") == 0        ? "list of points"

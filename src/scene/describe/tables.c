@@ -163,30 +163,35 @@ static const char *const scalars =
     "| column | unit | meaning |\n|---|---|---|\n";
 
 static const struct { const char *topic, *file, *doc; tobi_table table; } tables[] = {
-    { "history", "history.csv", "The columns of history.csv: a row per output.", TOBI_TABLE_HISTORY },
-    { "bodies", "bodies.csv", "The columns of bodies.csv: a row per output and body.", TOBI_TABLE_BODIES },
-    { "solids", "solids.csv", "The columns of solids.csv: a row per output and solid.", TOBI_TABLE_SOLIDS },
-    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind point: NAME_pressure, ...",
+    { "history", "history.csv", TR("The columns of history.csv: a row per output."), TOBI_TABLE_HISTORY },
+    { "bodies", "bodies.csv", TR("The columns of bodies.csv: a row per output and body."),
+     TOBI_TABLE_BODIES },
+    { "solids", "solids.csv", TR("The columns of solids.csv: a row per output and solid."),
+     TOBI_TABLE_SOLIDS },
+    { "probes", "probes.csv", TR("The columns of probes.csv for a probe of kind point: NAME_pressure, ..."),
       TOBI_TABLE_POINT },
-    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind level: NAME_level.",
+    { "probes", "probes.csv", TR("The columns of probes.csv for a probe of kind level: NAME_level."),
       TOBI_TABLE_LEVEL },
-    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind patch: NAME_pressure, ...",
+    { "probes", "probes.csv", TR("The columns of probes.csv for a probe of kind patch: NAME_pressure, ..."),
       TOBI_TABLE_PATCH },
-    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind run-up: NAME_run_up, ...",
+    { "probes", "probes.csv", TR("The columns of probes.csv for a probe of kind run-up: NAME_run_up, ..."),
       TOBI_TABLE_RUN_UP },
-    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind flow: NAME_flow.",
+    { "probes", "probes.csv", TR("The columns of probes.csv for a probe of kind flow: NAME_flow."),
       TOBI_TABLE_FLOW },
-    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind volume: NAME_volume.",
+    { "probes", "probes.csv", TR("The columns of probes.csv for a probe of kind volume: NAME_volume."),
       TOBI_TABLE_VOLUME },
-    { "lines", "lines.csv", "The columns of lines.csv for each line: NAME_tension, ...", TOBI_TABLE_LINES },
-    { "joints", "joints.csv", "The columns of joints.csv for each joint: NAME_force_x, ...",
+    { "lines", "lines.csv", TR("The columns of lines.csv for each line: NAME_tension, ..."),
+     TOBI_TABLE_LINES },
+    { "joints", "joints.csv", TR("The columns of joints.csv for each joint: NAME_force_x, ..."),
       TOBI_TABLE_JOINTS },
-    { "zones", "porous_zones.csv", "The columns of porous_zones.csv for each zone: NAME_force_x, ...",
+    { "zones", "porous_zones.csv", TR("The columns of porous_zones.csv for each zone: NAME_force_x, ..."),
       TOBI_TABLE_POROUS },
-    { "scalars", "scalars.csv", "The columns of scalars.csv: temperature_min, ..., concentration_min, ...",
+    { "scalars", "scalars.csv",
+      TR("The columns of scalars.csv: temperature_min, ..., concentration_min, ..."),
       TOBI_TABLE_SCALARS },
     { "scalars", "scalars.csv",
-      "The columns of scalars.csv for each side and body with a value or flux: NAME_temperature_flow, ...",
+      TR("The columns of scalars.csv for each side and body with a value or flux: "
+         "NAME_temperature_flow, ..."),
       TOBI_TABLE_SCALAR_FLOWS },
 };
 enum { TABLES = sizeof tables/sizeof *tables };
@@ -203,7 +208,7 @@ static int is_above(const tobi_column *c) { return !*c->doc; }
 static void print_column(FILE *out, tobi_table table, int index)
 {
     const tobi_column *c = tobi_run_column(table, index);
-    fprintf(out, "  %-27s %-7s %s\n", c->name, c->unit, is_above(c) ? "(as above)" : c->doc);
+    fprintf(out, "  %-27s %-7s %s\n", c->name, c->unit, is_above(c) ? tr("(as above)") : tr(c->doc));
 }
 
 int tobi_tables_describe(FILE *out, const char *topic)
@@ -211,7 +216,7 @@ int tobi_tables_describe(FILE *out, const char *topic)
     int found = 0;
     for (int k = 0; k < TABLES; k++) {
         if (strcmp(tables[k].topic, topic) != 0) continue;
-        fprintf(out, "%s%s\n", found++ ? "\n" : "", tables[k].doc);
+        fprintf(out, "%s%s\n", found++ ? "\n" : "", tr(tables[k].doc));
         for (int i = 0; tobi_run_column(tables[k].table, i); i++) print_column(out, tables[k].table, i);
     }
     return found;
@@ -224,8 +229,8 @@ int tobi_tables_find(FILE *out, const char *name)
     for (int k = 0; k < TABLES; k++)
         for (int i = 0; (c = tobi_run_column(tables[k].table, i)); i++) {
             if (strcmp(c->name, name) != 0) continue;
-            fprintf(out, "%s: column of %s, unit %s\n      %s\n", name, tables[k].file, c->unit,
-                    find_meaning(tables[k].table, i));
+            fprintf(out, tr("%s: column of %s, unit %s\n      %s\n"), name, tables[k].file, c->unit,
+                    tr(find_meaning(tables[k].table, i)));
             found++;
         }
     return found;
@@ -235,11 +240,12 @@ const char *tobi_tables_topic(int index, const char **doc)
 {
     static const char *const names[] = { "history", "bodies", "solids", "probes", "lines", "joints", "zones",
                                          "scalars", "tables" };
-    static const char *const docs[] = { "The columns of history.csv, with units.", "Those of bodies.csv.",
-                                        "Those of solids.csv.", "Those of probes.csv.",
-                                        "Those of lines.csv.", "Those of joints.csv.",
-                                        "Those of porous_zones.csv.", "Those of scalars.csv.",
-                                        "The page of all columns, in Markdown (docs/tables.md)." };
+    static const char *const docs[] = { TR("The columns of history.csv, with units."),
+                                        TR("Those of bodies.csv."), TR("Those of solids.csv."),
+                                        TR("Those of probes.csv."),
+                                        TR("Those of lines.csv."), TR("Those of joints.csv."),
+                                        TR("Those of porous_zones.csv."), TR("Those of scalars.csv."),
+                                        TR("The page of all columns, in Markdown (docs/tables.md).") };
     if (index < 0 || index >= (int)(sizeof names/sizeof *names)) return NULL;
     *doc = docs[index];
     return names[index];
