@@ -189,6 +189,28 @@ static void print_scene(const tobi_scene *scene, const tobi_world *world, const 
                tobi_scene_import_table(scene));
 }
 
+/* Starts the nests and tells what they are. *share: their particles times the steps that they take in one of
+   the scene; *bytes: of memory. */
+static tobi_status print_nests(const tobi_scene *scene, const tobi_nests *nests, double *share, double *bytes,
+                               tobi_error *err)
+{
+    const char *name;
+    tobi_world *w;
+    *share = *bytes = 0;
+    for (int k = 0; (w = tobi_nests_world(nests, k, &name)) != NULL; k++) {
+        int64_t fluid, bodies, size;
+        const double spacing = tobi_nests_spacing(nests, k);
+        tobi_status status = tobi_world_start(w, err);
+        if (status == TOBI_OK) status = tobi_world_estimate(w, &fluid, &bodies, &size, err);
+        if (status != TOBI_OK) return status;
+        print_label(tr("nest"));
+        printf(tr("%s: spacing %g m, %lld particles at the start\n"), name, spacing, (long long)fluid);
+        *share += (double)fluid*tobi_scene_world_def(scene)->spacing/spacing;
+        *bytes += (double)size;
+    }
+    return TOBI_OK;
+}
+
 static void print_size(const tobi_scene *scene, const tobi_run_size *size)
 {
     char bytes[32], *dir = results_path(scene, NULL), *objection = dir ? size_objection(size, dir) : NULL;
@@ -205,18 +227,20 @@ static void print_size(const tobi_scene *scene, const tobi_run_size *size)
     free(dir);
 }
 
-static int print_time(const tobi_scene *scene, const trial *t)
+/* more: of nests, over the time of the scene's own steps. */
+static int print_time(const tobi_scene *scene, const trial *t, double more)
 {
     const double end = tobi_scene_world_def(scene)->end_time;
     char least[32], most[32];
     if (t->status != TOBI_OK) return complain("after %d steps: %s", t->steps, t->err.text);
     if (t->steps < 2) return 0;
-    duration_text(t->wall * end / t->most, least);
-    duration_text(t->wall * end / t->least, most);
+    duration_text((1 + more) * t->wall * end / t->most, least);
+    duration_text((1 + more) * t->wall * end / t->least, most);
     const int differ = is_range(t) && strcmp(least, most) != 0;
     print_label(tr("wall clock"));
-    printf(tr("about %s%s%s for the steps on this machine, if as fast as the first %d%s\n"),
+    printf(tr("about %s%s%s for the steps on this machine, if as fast as the first %d%s%s\n"),
            differ ? least : "", differ ? tr(" to ") : "", most, t->steps,
+           more > 0 ? tr(", nests by their particles") : "",
            tobi_scene_output_def(scene)->frames ? tr("; pictures take more") : "");
     return 0;
 }
@@ -276,22 +300,31 @@ static const char *name_particles(const tobi_scene *scene, const tobi_world *wor
     return method.solids ? tr("solid particles") : tr("particles");
 }
 
+static int end_check(tobi_scene *scene, tobi_world *world, tobi_nests *nests, tobi_error *err)
+{
+    tobi_scene_place_error(scene, err);
+    tobi_nests_free(nests);
+    tobi_world_destroy(world);
+    return complain("%s", err->text);
+}
+
 static int check_world(tobi_scene *scene)
 {
     tobi_error err = { 0 };
     tobi_world *world = NULL;
     cost c = { 0 };
+    tobi_nests *nests = NULL;
+    double share = 0, bytes = 0;
     tobi_status status = tobi_scene_build(scene, &world, &err);
+    if (status == TOBI_OK) status = tobi_nests_create(scene, world, &nests, &err);
     if (status == TOBI_OK) status = find_cost(scene, world, &c, &err);
-    if (status != TOBI_OK) {
-        tobi_scene_place_error(scene, &err);
-        tobi_world_destroy(world);
-        return complain("%s", err.text);
-    }
+    if (status != TOBI_OK) return end_check(scene, world, nests, &err);
     trial t;
     try_steps(tobi_scene_world_def(scene), world, c.fluid <= START_LIMIT, &t);
     print_scene(scene, world, &t);
-    const double machine = machine_bytes(), needed = all_bytes(&c, world);
+    if (print_nests(scene, nests, &share, &bytes, &err) != TOBI_OK)
+        return end_check(scene, world, nests, &err);
+    const double machine = machine_bytes(), needed = all_bytes(&c, world) + bytes;
     if (c.fluid > 0) {
         print_label(name_particles(scene, world));
         printf("%lld\n", (long long)c.fluid);
@@ -302,11 +335,12 @@ static int check_world(tobi_scene *scene)
     printf(tr("%.1f MB of %.0f MB\n"), needed * 1e-6, machine * 1e-6);
     print_size(scene, &c.size);
     int code = needed > machine ? complain("%s", tr(too_many)) : 0;
-    if (c.fluid <= START_LIMIT) code |= print_time(scene, &t);
+    if (c.fluid <= START_LIMIT) code |= print_time(scene, &t, share/fmax((double)c.fluid, 1));
     else {
         print_label(tr("wall clock"));
         printf(tr("not measured with more than %d particles\n"), START_LIMIT);
     }
+    tobi_nests_free(nests);
     tobi_world_destroy(world);
     return code;
 }

@@ -38,9 +38,14 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
     tobi_error err = { 0 };
     tobi_world *world = NULL;
     tobi_run *run = NULL;
+    tobi_nests *nests = NULL;
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
     int code;
-    if (tobi_run_resume(world, tobi_scene_output_def(scene), o->dir, &run, &err) != TOBI_OK) {
+    if (tobi_nests_create(scene, world, &nests, &err) != TOBI_OK) {
+        code = complain("%s", err.text);
+    } else if (tobi_run_resume(world, tobi_scene_output_def(scene), o->dir, &run, &err) != TOBI_OK) {
+        code = complain("%s", err.text);
+    } else if (tobi_nests_record(nests, run, o->dir, TOBI_NESTS_RESUME, &err) != TOBI_OK) {
         code = complain("%s", err.text);
     } else if (tobi_scene_note_files(scene, o->dir, tobi_world_time(world), &err) != TOBI_OK) {
         code = complain("%s", err.text);
@@ -56,6 +61,7 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
         free(told);
     }
     tobi_run_free(run);
+    tobi_nests_free(nests);
     tobi_world_destroy(world);
     return code;
 }

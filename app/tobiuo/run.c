@@ -97,9 +97,21 @@ static void print_size(const tobi_run_size *size, const char *dir)
            bytes_text(size->bytes, bytes), size->files, dir);
 }
 
+/* What the scene's own world has not said. */
+static void print_nest_notes(const tobi_nests *nests)
+{
+    const char *name;
+    tobi_world *w;
+    char head[200];
+    for (int k = 0; (w = tobi_nests_world(nests, k, &name)) != NULL; k++) {
+        snprintf(head, sizeof head, tr("tobiuo: note: nest '%.100s': "), name);
+        print_notes(w, stderr, head);
+    }
+}
+
 /* Pictures with foam are drawn once, when there is foam: the run itself draws none. */
-static int record(tobi_scene *scene, tobi_world *world, const run_options *o, const char *dir,
-                  const tobi_run_size *size)
+static int record(tobi_scene *scene, tobi_world *world, tobi_nests *nests, const run_options *o,
+                  const char *dir, const tobi_run_size *size)
 {
     tobi_error err = { 0 };
     tobi_run *run = NULL;
@@ -111,9 +123,12 @@ static int record(tobi_scene *scene, tobi_world *world, const run_options *o, co
     if (!resolved) return complain("out of memory");
     tobi_status status = tobi_run_create(world, &output, dir, o->force, resolved, &run, &err);
     free(resolved);
+    if (status == TOBI_OK)
+        status = tobi_nests_record(nests, run, dir, o->force ? TOBI_NESTS_REPLACE : TOBI_NESTS_CREATE, &err);
     if (status == TOBI_OK) status = tobi_scene_note_files(scene, dir, 0, &err);
     if (!o->quiet && status == TOBI_OK) print_size(size, dir);
     if (!o->quiet) print_notes(world, stderr, tr("tobiuo: note: "));
+    if (!o->quiet) print_nest_notes(nests);
     tobi_scene_place_error(scene, &err);
     if (status != TOBI_OK) {
         tobi_run_free(run);
@@ -152,8 +167,13 @@ static int run_scene(tobi_scene *scene, const run_options *o)
 {
     tobi_error err = { 0 };
     tobi_world *world = NULL;
+    tobi_nests *nests = NULL;
     tobi_run_size size = { 0 };
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
+    if (tobi_nests_create(scene, world, &nests, &err) != TOBI_OK) {
+        tobi_world_destroy(world);
+        return complain("%s", err.text);
+    }
     char *dir = results_path(scene, o->out);
     if (tobi_scene_import_table(scene) && !o->quiet)
         printf(tr("a scene of %s; \"tobiuo check\" lists what became of each of its keys\n"),
@@ -168,7 +188,7 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     char quoted[SHELL_WORD];
     if (no_movie)
         complain("the run goes on and keeps its pictures; later: tobiuo movie %s", shell_word(dir, quoted));
-    if (code == 0) code = record(scene, world, o, dir, &size);
+    if (code == 0) code = record(scene, world, nests, o, dir, &size);
     if ((code == 0 || code == EXIT_UNWRITTEN) && o->foam) {
         const int made = make_foam(dir, o->quiet);
         if (code == 0) code = made;
@@ -182,6 +202,7 @@ static int run_scene(tobi_scene *scene, const run_options *o)
         if (code == 0) code = made;
     }
     free(dir);
+    tobi_nests_free(nests);
     tobi_world_destroy(world);
     return code;
 }

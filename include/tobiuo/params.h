@@ -72,6 +72,7 @@ TOBI_API extern const tobi_param_table tobi_gravity_table;
 TOBI_API extern const tobi_param_table tobi_central_table;
 TOBI_API extern const tobi_param_table tobi_damping_table;
 TOBI_API extern const tobi_param_table tobi_porous_table;
+TOBI_API extern const tobi_param_table tobi_nest_table;
 TOBI_API extern const tobi_param_table tobi_scalar_table;
 TOBI_API extern const tobi_param_table tobi_scalar_value_table;
 /* Whether gravity can follow it, its file included. */

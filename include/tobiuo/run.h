@@ -99,6 +99,11 @@ TOBI_API tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *in
 /* 1 when the world has reached `end` and no output is due. */
 TOBI_API int tobi_run_done(const tobi_run *run, double end);
 
+/* From now on the run steps a run of a nest of its world to the same times, saves its checkpoints with its
+   own and ends it. The run of the nest stays the caller's and must outlive the last step of this one.
+   TOBI_NO_MEMORY. */
+TOBI_API tobi_status tobi_run_add_nest(tobi_run *run, tobi_run *nest, tobi_error *err);
+
 /* Waits until every output so far is on the disk or one has failed, and tells that. */
 TOBI_API tobi_status tobi_run_wait(tobi_run *run, tobi_error *err);
 

@@ -86,6 +86,26 @@ TOBI_API const char *tobi_scene_import_program(const tobi_scene *scene);
 TOBI_API tobi_status tobi_scene_import(const char *old_path, const char *new_path, int force, char **table,
                                        tobi_report **report, tobi_error *err);
 
+/* The nests of a scene, each a world of its own (tobi_world_nest); none is fine. The scene and the outer
+   world must outlive them. Fails as tobi_scene_build and tobi_world_nest do. */
+typedef struct tobi_nests tobi_nests;
+TOBI_API tobi_status tobi_nests_create(tobi_scene *scene, tobi_world *outer, tobi_nests **nests,
+                                       tobi_error *err);
+/* 0 for NULL. */
+TOBI_API int tobi_nests_count(const tobi_nests *nests);
+/* The world of a nest and, if name is not NULL, its name; NULL past the end. Both owned by the nests. */
+TOBI_API tobi_world *tobi_nests_world(const tobi_nests *nests, int nest, const char **name);
+/* m: of its particles; 0 past the end. */
+TOBI_API double tobi_nests_spacing(const tobi_nests *nests, int nest);
+/* Records each in the folder nests/NAME of dir, where `run` records the outer world: from then on `run` steps
+   them. Fails as tobi_run_create and tobi_run_resume do. */
+enum { TOBI_NESTS_CREATE, TOBI_NESTS_REPLACE, TOBI_NESTS_RESUME };
+struct tobi_run;
+TOBI_API tobi_status tobi_nests_record(tobi_nests *nests, struct tobi_run *run, const char *dir, int how,
+                                       tobi_error *err);
+/* After the run of the outer world; NULL is fine. */
+TOBI_API void tobi_nests_free(tobi_nests *nests);
+
 /* The scene as JSON with every default made explicit and paths of files made absolute, so that it
    can be kept in any directory of the same machine; loading it gives the same scene bit for bit.
    Owned by the caller (free()). NULL when out of memory. */

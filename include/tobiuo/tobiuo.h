@@ -70,6 +70,7 @@ TOBI_API tobi_gravity_def tobi_default_gravity_def(void);
 TOBI_API tobi_central_def tobi_default_central_def(void);
 TOBI_API tobi_damping_def tobi_default_damping_def(void);
 TOBI_API tobi_porous_def tobi_default_porous_def(void);
+TOBI_API tobi_nest_def tobi_default_nest_def(void);
 TOBI_API tobi_scalar_def tobi_default_scalar_def(void);
 TOBI_API tobi_scalar_value_def tobi_default_scalar_value_def(void);
 
@@ -134,6 +135,22 @@ TOBI_API const char *tobi_world_note(const tobi_world *world, int note);
 /* Adds a note of the caller's own, a copy. */
 TOBI_API tobi_status tobi_world_add_note(tobi_world *world, const char *text, tobi_error *err);
 
+/* Makes a world, before its start, a nest of an outer one: of the same domain, method, fluids and bodies,
+   with a spacing that is smaller by the refinement. It has liquid in the box and in a rim around it, which
+   follows the outer liquid. The caller steps the outer world, then the nest up to the same time, then calls
+   tobi_world_feed.
+   Its bodies are moved by motions; tobi_nest_motion moves one as the outer world does. The outer world must
+   outlive it. TOBI_INVALID, TOBI_UNSUPPORTED in words (docs/decisions/0157-nests.md). */
+TOBI_API tobi_status tobi_world_nest(tobi_world *world, tobi_world *outer, const tobi_nest_def *def,
+                                     tobi_error *err);
+/* Of a nest with feedback: gives the outer liquid in the box, two outer spacings from its sides, the velocity
+   that the nest has; else nothing. TOBI_INVALID for a world that is no nest. */
+TOBI_API tobi_status tobi_world_feed(tobi_world *nest, tobi_error *err);
+/* A tobi_motion_fn, rigid: as a body of an outer world goes, around the time of that; user: a tobi_nest_body,
+   which must outlive the world. */
+typedef struct tobi_nest_body { const tobi_world *outer; int body; } tobi_nest_body;
+TOBI_API tobi_status tobi_nest_motion(void *user, double t, int64_t n, const double (*rest)[3],
+                                      double (*position)[3], tobi_error *err);
 /* Counts particles and bytes without allocating them, and notes a fixed time step that will be cut. */
 TOBI_API tobi_status tobi_world_estimate(tobi_world *world, int64_t *fluid_particles,
                                          int64_t *body_particles, int64_t *bytes, tobi_error *err);

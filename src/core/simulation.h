@@ -5,6 +5,7 @@
 #include "core/cells.h"
 #include "core/constraint.h"
 #include "core/damping.h"
+#include "core/nest.h"
 #include "core/opening.h"
 #include "core/plane.h"
 #include "core/porous.h"
@@ -31,6 +32,10 @@ typedef struct tobi_simulation {
     int plane_count;
     tobi_opening *openings;         /* owned by the world                                    */
     int opening_count;
+    tobi_nest nest;
+    int has_nests;                  /* 1: worlds that are nests of this one                   */
+    tobi_float4 *before;            /* owned by the world: velocities before the step by id, for nests */
+    int64_t before_room;
     tobi_damping damping[TOBI_DAMPING_LIMIT];
     int damping_count;
     tobi_porous porous[TOBI_POROUS_LIMIT];
@@ -61,6 +66,12 @@ typedef struct tobi_simulation {
 /* The step to take where `dt` is stable and `max_dt` (0 = any) is left: the last eight steps to a time are
    equal, so that what depends on the step before is right there (decision 111). */
 double tobi_simulation_fit_dt(double dt, double max_dt);
+
+/* Of a particle of the first system, NULL where it is not known. */
+static inline const tobi_float4 *tobi_simulation_before(const tobi_simulation *s, int64_t id)
+{
+    return s->before && id < s->before_room ? &s->before[id] : NULL;
+}
 
 /* The largest acceleration that liquid and bodies feel along an axis, and its size, m/s2. */
 double tobi_simulation_pull(const tobi_simulation *s, int axis);

@@ -137,6 +137,8 @@ struct tobi_run {
     tobi_looks looks;                     /* for pictures; its lists are empty before */
     struct tobi_skin *skin;               /* of bodies with a texture; NULL = none   */
     int skin_count;
+    tobi_run **nest;                      /* runs of nests, the callers'             */
+    int nest_count;
     struct tobi_writer *writer;
     tobi_pvd *list;                       /* of each series, then of all             */
     int series;

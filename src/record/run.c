@@ -251,6 +251,44 @@ static tobi_status step_towards(tobi_run *run, double target, double end, tobi_e
     return tobi_tables_write_probes(run, start, err);
 }
 
+tobi_status tobi_run_add_nest(tobi_run *run, tobi_run *nest, tobi_error *err)
+{
+    TOBI_NEED(run, "run");
+    TOBI_NEED(nest, "the run of a nest");
+    tobi_run **more = realloc(run->nest, (size_t)(run->nest_count + 1)*sizeof *more);
+    if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    run->nest = more;
+    more[run->nest_count++] = nest;
+    return TOBI_OK;
+}
+
+/* A nest to the time of the outer world. */
+static tobi_status follow(tobi_run *nest, double t, double end, tobi_error *err)
+{
+    while (tobi_world_time(nest->world) < t) {
+        const double next = tobi_record_time(nest, nest->outputs);
+        TOBI_TRY(step_towards(nest, fmin(next, t), end, err));
+        if (reached(nest, next)) TOBI_TRY(tobi_run_output(nest, err));
+    }
+    return TOBI_OK;
+}
+
+/* Nests are behind only after a stop between the step of the outer world and theirs: then its neighbours are
+   found again first. */
+static tobi_status catch_up(tobi_run *run, double end, int stepped, tobi_error *err)
+{
+    const double t = tobi_world_time(run->world);
+    for (int k = 0; k < run->nest_count; k++) {
+        tobi_world *w = run->nest[k]->world;
+        tobi_world_set_stop(w, run->world->sim.stop, run->world->sim.stop_user);
+        if (tobi_world_time(w) >= t) continue;
+        if (!stepped) TOBI_TRY(tobi_world_refresh(run->world, err));
+        TOBI_TRY(follow(run->nest[k], t, end, err));
+        TOBI_TRY(tobi_world_feed(w, err));
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_error *err)
 {
     TOBI_NEED(run, "run");
@@ -258,8 +296,11 @@ tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_
     double next = tobi_record_time(run, run->outputs);
     double target = fmin(next, snap_end(run, end));
     TOBI_TRY(tobi_writer_check(run->writer, err));
-    if (!reached(run, target)) TOBI_TRY(step_towards(run, target, end, err));
-    else if (!reached(run, next)) return tobi_writer_wait(run->writer, err);
+    TOBI_TRY(catch_up(run, end, 0, err));
+    if (!reached(run, target)) {
+        TOBI_TRY(step_towards(run, target, end, err));
+        TOBI_TRY(catch_up(run, end, 1, err));
+    } else if (!reached(run, next)) return tobi_writer_wait(run->writer, err);
     if (info) *info = run->world->sim.info;
     if (reached(run, next)) TOBI_TRY(tobi_run_output(run, err));
     if (tobi_world_time(run->world) >= run->next_checkpoint)
@@ -289,6 +330,7 @@ tobi_status tobi_run_output_end(tobi_run *run, tobi_error *err)
 {
     TOBI_NEED(run, "run");
     const double last = tobi_record_time(run, run->outputs - 1);
+    for (int k = 0; k < run->nest_count; k++) TOBI_TRY(tobi_run_output_end(run->nest[k], err));
     return tobi_record_reaches(last, tobi_world_time(run->world)) ? TOBI_OK : tobi_run_output(run, err);
 }
 
@@ -311,6 +353,7 @@ static tobi_status save(tobi_run *run, tobi_error *err)
 tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err)
 {
     TOBI_NEED(run, "run");
+    for (int k = 0; k < run->nest_count; k++) TOBI_TRY(tobi_run_checkpoint(run->nest[k], err));
     TOBI_TRY(tobi_writer_wait(run->writer, err));
     if (run->world->sim.step == run->checkpoint_step && run->outputs == run->checkpoint_outputs)
         return TOBI_OK;
@@ -333,6 +376,7 @@ tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err)
 {
     TOBI_NEED(run, "run");
     TOBI_NEED(outcome, "the outcome");
+    for (int k = 0; k < run->nest_count; k++) TOBI_TRY(tobi_run_finish(run->nest[k], outcome, err));
     tobi_status status = tobi_writer_wait(run->writer, err);
     if (status == TOBI_OK) status = end_files(run, err);
     if (status != TOBI_OK) err = NULL;
@@ -362,6 +406,7 @@ void tobi_run_free(tobi_run *run)
     free(run->solid_since);
     tobi_works_free(run);
     free(run->aside);
+    free(run->nest);
     free(run->sensor);
     free(run->resolved);
     free(run->dir);

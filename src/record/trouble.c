@@ -91,6 +91,7 @@ void tobi_run_go_on(tobi_run *run, int on)
     if (!run) return;
     tobi_tables_list(run, tables);
     run->goes_on = on != 0;
+    for (int k = 0; k < run->nest_count; k++) tobi_run_go_on(run->nest[k], on);
     for (int k = 0; k < TOBI_TABLES; k++)
         if (tables[k]) tobi_csv_set_patient(tables[k], on);
 }

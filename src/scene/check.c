@@ -400,6 +400,7 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     check_values(scene, source);
     tobi_unused_check(scene, source);
     tobi_check_probes(scene, source);
+    tobi_nests_check(scene, source);
     tobi_lines_check(scene, source);
     tobi_joint_list_check(scene, source);
     tobi_clamps_check(scene, source);

@@ -421,3 +421,10 @@ json_t *tobi_motion_write(const tobi_motion_def *def)
     json_decref(list);
     return NULL;
 }
+
+int tobi_motion_absorbs(const tobi_motion_def *def)
+{
+    for (int k = 0; k < TOBI_MOTION_LIMIT && def[k].table; k++)
+        if (strcmp(def[k].table->name, "piston") == 0 && def[k].as.waves.absorb) return 1;
+    return 0;
+}

@@ -52,5 +52,7 @@ enum { TOBI_MOTION_LIMIT = 16 };
    line in the report when that fails. def: TOBI_MOTION_LIMIT of them; those behind the last have no table. */
 tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const tobi_place *place,
                               tobi_motion_def *def);
+/* Whether one of them is a piston that absorbs waves. */
+int tobi_motion_absorbs(const tobi_motion_def *def);
 /* As JSON, NULL when out of memory or if there is no motion. */
 json_t *tobi_motion_write(const tobi_motion_def *def);

@@ -37,6 +37,8 @@ static const tobi_part parts[] = {
       "Where liquids are damped, if anywhere: beaches." },
     { "world", "porous_zones", TOBI_PART_LIST, &tobi_porous_table, 0, TOBI_POROUS_LIMIT,
       "Where stones, stems or screens resist liquids, if anywhere." },
+    { "world", "nests", TOBI_PART_LIST, &tobi_nest_table, 0, TOBI_NEST_LIMIT,
+      "Boxes in which liquid is computed again with a smaller spacing, if any." },
     { "world", "scalars", TOBI_PART_LIST, &tobi_scalar_table, 0, TOBI_SCALAR_LIMIT,
       "Temperature and concentration of the liquids, if any." },
     { "world", "scalar_values", TOBI_PART_LIST, &tobi_scalar_value_table, 0, TOBI_SCALAR_VALUE_LIMIT,

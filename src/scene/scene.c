@@ -510,9 +510,8 @@ void tobi_scene_place_error(tobi_scene *scene, tobi_error *err)
     tobi_report_free(report);
 }
 
-/* What a call answers that adds entry i of a list to the world; a refusal gets its place in the file. */
-static tobi_status place_error(tobi_scene *scene, const char *list, int i, tobi_status status,
-                               tobi_error *err)
+tobi_status tobi_scene_place_entry(tobi_scene *scene, const char *list, int i, tobi_status status,
+                                   tobi_error *err)
 {
     static const tobi_place root = { 0 };
     tobi_place all = { &root, list, 0 }, entry = { &all, NULL, (size_t)i };
@@ -529,7 +528,7 @@ static tobi_status place_error(tobi_scene *scene, const char *list, int i, tobi_
 /* Adds the entries of a list until one is refused. */
 #define ADD(list, count, call)                                         \
     for (int i = 0; i < scene->count && status == TOBI_OK; i++)        \
-    status = place_error(scene, list, i, call, err)
+    status = tobi_scene_place_entry(scene, list, i, call, err)
 
 tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *err)
 {

@@ -97,6 +97,13 @@ const tobi_body_def *tobi_scene_find_body(const tobi_scene *scene, const char *n
 json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_place *place,
                         const char *owner);
 
+/* scene.c: what a call answers that adds entry i of a list to the world; a refusal gets its place in the
+   file. */
+tobi_status tobi_scene_place_entry(tobi_scene *scene, const char *list, int i, tobi_status status,
+                                   tobi_error *err);
+/* nests.c: their names. */
+void tobi_nests_check(const tobi_scene *scene, tobi_source *source);
+
 /* lines.c: the key lines of the scene, which is `of`. */
 tobi_status tobi_lines_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);
 void tobi_lines_check(const tobi_scene *scene, tobi_source *source);

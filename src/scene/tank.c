@@ -61,6 +61,7 @@ static int write_list(const listing *l, const void *defs, int count, json_t *roo
 
 static const listing damping = { "damping_zones", TR("zones"), &tobi_damping_table, TOBI_ZONES },
                      porous = { "porous_zones", TR("zones"), &tobi_porous_table, TOBI_POROUS_LIMIT },
+                     nests = { "nests", TR("nests"), &tobi_nest_table, TOBI_NEST_LIMIT },
                      scalars = { "scalars", TR("scalars"), &tobi_scalar_table, TOBI_SCALAR_LIMIT },
                      values = { "scalar_values", TR("values"), &tobi_scalar_value_table,
                                 TOBI_SCALAR_VALUE_LIMIT };
@@ -77,6 +78,7 @@ void tobi_tank_bind(tobi_scene_tank *t, const tobi_binder *binder, json_t *scene
     if (frame) bind_frame(t, binder, frame, root);
     t->damping_count = bind_list(&damping, t->damping, binder, scene, root);
     t->porous_count = bind_list(&porous, t->porous, binder, scene, root);
+    t->nest_count = bind_list(&nests, t->nests, binder, scene, root);
     t->scalar_count = bind_list(&scalars, t->scalars, binder, scene, root);
     t->value_count = bind_list(&values, t->values, binder, scene, root);
 }
@@ -115,6 +117,7 @@ int tobi_tank_write(const tobi_scene_tank *t, json_t *root)
 {
     int failed = write_list(&damping, t->damping, t->damping_count, root) |
                  write_list(&porous, t->porous, t->porous_count, root) |
+                 write_list(&nests, t->nests, t->nest_count, root) |
                  write_list(&scalars, t->scalars, t->scalar_count, root) |
                  write_list(&values, t->values, t->value_count, root);
     drop_shapes(t, json_object_get(root, "porous_zones"));

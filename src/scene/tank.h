@@ -14,6 +14,8 @@ typedef struct tobi_scene_tank {
     int damping_count;
     tobi_porous_def porous[TOBI_POROUS_LIMIT];
     int porous_count;
+    tobi_nest_def nests[TOBI_NEST_LIMIT];
+    int nest_count;
     tobi_scalar_def scalars[TOBI_SCALAR_LIMIT];
     int scalar_count;
     tobi_scalar_value_def values[TOBI_SCALAR_VALUE_LIMIT];

@@ -165,7 +165,7 @@ static double base_pressure(const tobi_system *s)
 static void center(tobi_system *s, dfsph *m, const linear_solve *q, tobi_kernel kernel, double sum, double *t)
 {
     if (!q->constant_free) return;
-    m->view.mean = (float)(sum/(double)s->particles.count);
+    m->view.mean = (float)(sum/sph_rows(s));
     launch(s, m, kernel, t);
 }
 
@@ -186,7 +186,7 @@ static int ends(void *user)
 {
     const cg_run *c = user;
     linear_solve *q = c->q;
-    q->error = c->t[1]*c->s->dt*c->s->dt/(double)c->s->particles.count;
+    q->error = c->t[1]*c->s->dt*c->s->dt/sph_rows(c->s);
     q->worst = c->t[6];
     q->relative = relative_residual(c->s, c->m, q, c->t[0]);
     q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
@@ -262,7 +262,7 @@ static void solve_pressure(tobi_system *s, dfsph *m, const double *start, linear
     launch(s, m, k->sph_correct_pressure, t);
     const double base = q->grid ? base_pressure(s)*(double)s->particles.count : 0;
     center(s, m, q, k->sph_center_pressure, t[1] - base, NULL);
-    q->head = 2*t[0]/(double)s->particles.count;
+    q->head = 2*t[0]/sph_rows(s);
 }
 
 static tobi_status find_neighbors(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
@@ -380,7 +380,7 @@ static void correct_density(tobi_system *s, dfsph *m, double *clock)
     sph_stage(s, &m->view, SPH_CORRECT);
     m->view.pressure = sph_fields_of(&s->particles)->correction;
     launch(s, m, m->kernel->sph_density_residual, t);
-    double mean = t[2]*s->dt*s->dt/(double)s->particles.count;
+    double mean = t[2]*s->dt*s->dt/sph_rows(s);
     int full = m->memory.vessel == SPH_VESSEL_FULL, closes = has_void(s) && mean > m->def.density_tolerance;
     linear_solve q = {.tolerance = m->def.density_tolerance,
                .relative_tolerance = HUGE_VAL,
@@ -577,6 +577,7 @@ const tobi_method tobi_dfsph = {
     .doc = "Divergence-free SPH for water: incompressible, free surface, walls and moving bodies.",
     .density_ratio = 10,
     .damps_waves = 1,
+    .nests = 1,
     .params = &tobi_dfsph_table,
     .fields = &sph_field_list,
     .outputs = sph_outputs,

@@ -2,6 +2,7 @@
    list, though wcsph needs less of it. */
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
+#include "sph/openings.h"
 #include "sph/scalars.h"
 #include <string.h>
 
@@ -20,7 +21,7 @@ unsigned sph_needs(const tobi_system *s, int full)
     for (int f = 0; f < s->fluid_count; f++)
         if (s->fluid[f].tension > 0) needs |= SPH_NEED_TENSION;
     if (tobi_system_is_mixed(s)) needs |= SPH_NEED_PHASES;
-    if (s->sim->opening_count > 0) needs |= SPH_NEED_OPENINGS;
+    if (sph_has_openings(s)) needs |= SPH_NEED_OPENINGS;
     if (s->sim->def.implicit_viscosity) needs |= SPH_NEED_IMPLICIT;
     for (int f = 0; f < s->fluid_count && s->sim->def.implicit_viscosity; f++)
         if (!tobi_fluid_is_newtonian(&s->fluid[f]) || sph_scalars_thin(s)) needs |= SPH_NEED_APPARENT;

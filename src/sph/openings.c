@@ -2,6 +2,7 @@
    solve, and goes as the profile or the free liquid beside it does (docs/decisions/0061-openings.md, 0086).
    Drawback: the pressure at an inlet is that of the step before. */
 #include "sph/openings.h"
+#include "sph/nest.h"
 #include "sph/state.h"
 #include <math.h>
 
@@ -11,7 +12,7 @@ static const double CONTINUE = 0.5;
 /* Share of a held neighbour in the velocity of an outlet, over that of a free one. */
 static const double LATE = 0.1;
 
-int sph_has_openings(const tobi_system *s) { return s->sim->opening_count > 0; }
+int sph_has_openings(const tobi_system *s) { return s->sim->opening_count > 0 || s->sim->nest.outer; }
 
 static void mark_range(const void *view, int64_t begin, int64_t end)
 {
@@ -108,7 +109,7 @@ static int goes_on(const tobi_system *s, const tobi_opening *o)
 static const tobi_opening *opening_of(const tobi_system *s, int64_t i)
 {
     const float w = sph_fields_of(&s->particles)->held[i].w;
-    return w != 0 ? &s->sim->openings[(int)fabsf(w) - 1] : NULL;
+    return w != 0 && w != SPH_NEST_MARK ? &s->sim->openings[(int)fabsf(w) - 1] : NULL;
 }
 
 /* Pressures of outlets, and the velocities that their particles came with. */
@@ -257,6 +258,7 @@ void sph_openings_mark(tobi_system *s, sph_view *v)
             (&sph_of(s)->normal[k].x)[a] = a < 3 ? (float)s->sim->openings[k].normal[a]
                                                  : (float)goes_on(s, &s->sim->openings[k]);
     tobi_loop(s->sim->exec.threads, n, 0, mark_range, s);
+    sph_nest_mark(s);
     tobi_loop(s->sim->exec.threads, n, 512, extend_range, s);
     sph_openings_continue(s, CONTINUE);
     sph_of(s)->marked = 1;
@@ -268,6 +270,7 @@ void sph_openings_hold(tobi_system *s)
 {
     if (sph_has_openings(s) && sph_of(s)->marked)
         tobi_loop(s->sim->exec.threads, s->particles.count, 512, hold_range, s);
+    if (sph_of(s)->marked && !sph_of(s)->mirrors) sph_nest_hold(s);
 }
 
 void sph_openings_drive(tobi_system *s)
@@ -276,6 +279,7 @@ void sph_openings_drive(tobi_system *s)
     if (!sph_has_openings(s) || !sph_of(s)->marked) return;
     find_gains(s, d.gain);
     tobi_loop(s->sim->exec.threads, s->particles.count, 512, drive_range, &d);
+    sph_nest_hold(s);
 }
 
 static void hide_range(const void *view, int64_t begin, int64_t end)
@@ -285,7 +289,9 @@ static void hide_range(const void *view, int64_t begin, int64_t end)
     for (int64_t i = begin; i < end; i++) {
         const tobi_double3 *p = &s->particles.position[i];
         const double x[3] = { p->x, p->y, p->z };
-        if (f->surface_depth[i] > 0 && tobi_opening_find(s->sim->openings, s->sim->opening_count, x) >= 0)
+        if (!(f->surface_depth[i] > 0)) continue;
+        if (tobi_opening_find(s->sim->openings, s->sim->opening_count, x) >= 0 ||
+            (s->sim->nest.outer && tobi_nest_outside(&s->sim->nest, s->box.dimension, x) > 0))
             f->surface_depth[i] = 0;
     }
 }

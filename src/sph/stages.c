@@ -243,7 +243,7 @@ static const double SURFACE = 0.1, SURFACE_WITHOUT_ROOM = 0.5;
 tobi_status sph_classify_vessel(tobi_system *s, sph_view *v, const sph_kernels *k, double *vessel,
                                  double *clock, tobi_error *err)
 {
-    double t[TOBI_TOTALS], count = (double)s->particles.count;
+    double t[TOBI_TOTALS], count = sph_rows(s);
     if (*vessel != SPH_VESSEL_UNKNOWN) return TOBI_OK;
     if (sph_has_openings(s)) *vessel = SPH_VESSEL_OPEN;        /* the levels may change */
     TOBI_TRY(sph_find_boundaries(s, v, k, clock, err));
@@ -261,7 +261,7 @@ double sph_measure_density(tobi_system *s, sph_view *v, const sph_kernels *k, do
                            double *clock)
 {
     sph_state *state = sph_of(s);
-    double t[TOBI_TOTALS], count = (double)s->particles.count;
+    double t[TOBI_TOTALS], count = sph_rows(s);
     v->pressure = sph_fields_of(&s->particles)->pressure;
     v->smooth = (float)smooth;
     launch(s, v, k->sph_density, t);

@@ -16,12 +16,18 @@ typedef struct sph_state {
     double middle;                  /* m, median depth of the free surface, of the step at hand         */
     double friction[3];             /* N, of implicit viscosity on the sides of the domain              */
     int marked;                     /* 1: the `held` of particles is that of the present rows       */
-    tobi_float4 normal[TOBI_OPENING_LIMIT];      /* of openings                                     */
+    tobi_float4 normal[TOBI_OPENING_LIMIT + 1];  /* of openings; none of the rim of a nest          */
     int mirrors;                    /* 1: walls are mirrors (isph), 0: integrals of the kernel          */
     int past_edges;                 /* 1: pairs past blunt edges of bodies stay, boundary/pairs.c     */
 } sph_state;
 
 static inline sph_state *sph_of(const tobi_system *s) { return s->state; }
+
+/* Particles, for means over them: 1 where all have left, and sums are 0. */
+static inline double sph_rows(const tobi_system *s)
+{
+    return s->particles.count > 0 ? (double)s->particles.count : 1;
+}
 
 /* In a range over entries: runs over them; those of one particle are handled together, where the first of
    them stands. */

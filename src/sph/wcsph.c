@@ -175,7 +175,7 @@ static void apply_pressure(tobi_system *s, wcsph *m, double *clock)
     launch(s, m, m->kernel->sph_carry, NULL);
     launch(s, m, m->kernel->sph_tait, t);
     sph_viscosity_expect(s, -1);
-    s->info.divergence_mean = t[0]/(double)s->particles.count;
+    s->info.divergence_mean = t[0]/sph_rows(s);
     s->info.divergence_max = t[6];
     s->info.density_converged = s->info.divergence_converged = 1;      /* there is no solver */
     launch(s, m, m->kernel->sph_pressure_kick, t);

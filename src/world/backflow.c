@@ -27,7 +27,7 @@ static int locate(const tobi_system *s, const tobi_opening *o, int64_t i, double
     return at[0] >= -d && at[0] <= tobi_outlet_depth(o, &s->smoothing) + d && tobi_opening_faces(o, at);
 }
 
-static int is_beyond(const tobi_system *s, const tobi_opening *o, int64_t i)
+static int is_beyond(const tobi_system *s, const void *o, int64_t i)
 {
     double at[3];
     return locate(s, o, i, at);
@@ -98,7 +98,7 @@ static tobi_status repeat(tobi_system *s, int64_t of, const double x[3], tobi_er
     p->position[row] = (tobi_double3){ x[0], x[1], x[2] };
     p->velocity[row] = p->velocity[of];
     p->fluid[row] = p->fluid[of];
-    tobi_scalars_repeat(s, row, of);
+    tobi_scalars_repeat(s, row, s, of);
     s->info.particles_in++;
     return TOBI_OK;
 }

@@ -5,6 +5,7 @@
 #include "world/bodies.h"
 #include "world/change.h"
 #include "world/load_system.h"
+#include "world/nest.h"
 #include "world/openings.h"
 #include "world/step.h"
 #include "world/world.h"
@@ -42,6 +43,7 @@ static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
         tobi_openings_get(w, way);
         TOBI_TRY(tobi_store_put(f, "openings", TOBI_F64, s->opening_count, 1, way, err));
     }
+    TOBI_TRY(tobi_nest_put(w, f, err));
     return tobi_world_put_bodies(w, f, err);
 }
 
@@ -67,12 +69,15 @@ typedef struct loaded {
     double clock[CLOCK], gravity[3], way[TOBI_OPENING_LIMIT];
     tobi_loaded_system system[TOBI_SYSTEM_LIMIT];
     tobi_loaded_bodies bodies;
+    uint8_t *seen;
+    int64_t seen_ids;
 } loaded;
 
 static void free_loaded(loaded *l)
 {
     for (int k = 0; k < TOBI_SYSTEM_LIMIT; k++) tobi_loaded_system_free(&l->system[k]);
     tobi_loaded_bodies_free(&l->bodies);
+    free(l->seen);
 }
 
 static tobi_status check_bodies(const tobi_world *w, tobi_store *f, tobi_error *err)
@@ -112,6 +117,7 @@ static tobi_status read_all(tobi_world *w, tobi_store *f, const char *path, load
     TOBI_TRY(check_bodies(w, f, err));
     TOBI_TRY(read_clock(f, path, l, err));
     TOBI_TRY(read_openings(w, f, path, l, err));
+    TOBI_TRY(tobi_nest_get(w, f, path, &l->seen, &l->seen_ids, err));
     for (int k = 0; k < w->system_count; k++)
         TOBI_TRY(tobi_system_get(&w->system[k], k, f, path, &l->system[k], err));
     return tobi_world_read_bodies(w, f, &l->bodies, err);
@@ -131,6 +137,8 @@ static void take_over(tobi_world *w, loaded *l)
     for (int k = 0; k < s->scalar_place_count; k++) s->scalar_place[k].flow = 0;
     s->scalar_power = 0;
     tobi_openings_set(w, l->way);
+    if (w->sim.nest.outer) tobi_nest_take(w, l->seen, l->seen_ids);
+    l->seen = NULL;
     for (int k = 0; k < w->system_count; k++) tobi_system_take(&w->system[k], &l->system[k]);
     w->system[0].step = l->step;
     w->system[0].dt = l->clock[1];

@@ -3,6 +3,7 @@
 #include "world/fill.h"
 #include "world/overlap.h"
 #include "base/error.h"
+#include "world/nest.h"
 #include "world/openings.h"
 #include "geom/seed.h"
 #include <math.h>
@@ -288,7 +289,7 @@ static tobi_status fill(tobi_system *s, tobi_region *r, const tobi_bvh *tree, do
         }
         r->outside += out;
         if (tobi_overlap_meets(taken, x)) continue;
-        if (out || tobi_openings_cover(s->sim, x)) continue;
+        if (out || tobi_openings_cover(s->sim, x) || !tobi_nest_takes(s, x)) continue;
         if (inside_body(s, r, x)) r->covered++;
         else if (behind_plane(s, x)) r->behind++;
         else if (tobi_overlap_meets(s->sim->soft.start, x)) r->soaked++;

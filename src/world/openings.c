@@ -439,7 +439,7 @@ tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err)
 /* --- a step ---------------------------------------------------------------------------------- */
 
 /* Through any outlet. */
-static int is_gone(const tobi_system *s, const tobi_opening *none, int64_t i)
+static int is_gone(const tobi_system *s, const void *none, int64_t i)
 {
     const tobi_simulation *w = s->sim;
     (void)none;
@@ -459,7 +459,7 @@ static int is_gone(const tobi_system *s, const tobi_opening *none, int64_t i)
 typedef struct choosing {
     const tobi_system *s;
     tobi_opening_wants wants;
-    const tobi_opening *o;
+    const void *o;
     int64_t *block;
     int32_t *row;
 } choosing;
@@ -493,7 +493,12 @@ static tobi_status grow(void **p, int64_t *room, int64_t need, size_t size, tobi
 tobi_status tobi_openings_choose(tobi_world *w, tobi_opening_wants wants, const tobi_opening *o,
                                  int64_t *count, tobi_error *err)
 {
-    const tobi_system *s = &w->system[0];
+    return tobi_rows_choose(w, &w->system[0], wants, o, count, err);
+}
+
+tobi_status tobi_rows_choose(tobi_world *w, const tobi_system *s, tobi_opening_wants wants, const void *o,
+                             int64_t *count, tobi_error *err)
+{
     const int64_t blocks = (s->particles.count + TOBI_BLOCK - 1)/TOBI_BLOCK;
     TOBI_TRY(grow((void **)&w->chosen_block, &w->chosen_blocks, blocks + 1, sizeof *w->chosen_block, err));
     choosing l = { s, wants, o, w->chosen_block, NULL };

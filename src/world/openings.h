@@ -16,9 +16,11 @@ double tobi_openings_share(const tobi_system *s);
 /* TOBI_DIVERGED, in words, where they have brought more than the domain holds. */
 tobi_status tobi_openings_check_room(const tobi_world *w, tobi_error *err);
 /* Rows that are wanted, in their order, into w->chosen. Errors: no memory. */
-typedef int (*tobi_opening_wants)(const tobi_system *s, const tobi_opening *o, int64_t i);
+typedef int (*tobi_opening_wants)(const tobi_system *s, const void *o, int64_t i);
 tobi_status tobi_openings_choose(tobi_world *w, tobi_opening_wants wants, const tobi_opening *o,
                                  int64_t *count, tobi_error *err);
+tobi_status tobi_rows_choose(tobi_world *w, const tobi_system *s, tobi_opening_wants wants, const void *o,
+                             int64_t *count, tobi_error *err);
 /* backflow.c: fills the buffers of outlets whose pressure is given. */
 tobi_status tobi_openings_give(tobi_world *w, tobi_error *err);
 /* How far beyond its plane an outlet keeps particles, m. */

@@ -90,8 +90,8 @@ const tobi_param_table *tobi_param_table_at(int index)
         &tobi_fluid_table, &tobi_interface_table, &tobi_solid_table, &tobi_fill_table, &tobi_body_table,
         &tobi_plane_table, &tobi_inlet_table, &tobi_outlet_table, &tobi_probe_table, &tobi_line_table,
         &tobi_joint_table, &tobi_output_table, &tobi_view_table, &tobi_reference_table, &tobi_gravity_table,
-        &tobi_central_table, &tobi_damping_table, &tobi_porous_table, &tobi_scalar_table,
-        &tobi_scalar_value_table
+        &tobi_central_table, &tobi_damping_table, &tobi_porous_table, &tobi_nest_table,
+        &tobi_scalar_table, &tobi_scalar_value_table
     };
     if (index == 0) return &tobi_world_table;
     for (int m = 0; index > 0 && tobi_method_at(m); m++)
@@ -148,5 +148,6 @@ DEFAULT(gravity)
 DEFAULT(central)
 DEFAULT(damping)
 DEFAULT(porous)
+DEFAULT(nest)
 DEFAULT(scalar)
 DEFAULT(scalar_value)

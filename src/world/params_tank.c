@@ -1,4 +1,4 @@
-/* Parameters of what a tank has: gravity in time, a central force, damping and porous zones. */
+/* Parameters of what a tank has: gravity in time, a central force, damping and porous zones, nests. */
 #include "base/param_rows.h"
 #include "base/param.h"
 
@@ -101,3 +101,24 @@ static const tobi_param porous_rows[] = {
 const tobi_param_table tobi_porous_table = {
     "porous_zone", "A shape whose contents resist liquids: one of stones, stems, screen and resistance.",
     sizeof(tobi_porous_def), porous_rows };
+
+static const tobi_param nest_rows[] = {
+    { .key = "name", TEXT, AT(tobi_nest_def, name), .unit = "name", .text = "nest", .required = true,
+      .doc = "Name of the nest, used once among nests: its results go to the folder nests/NAME." },
+    { .key = "box.min", VEC3, AT(tobi_nest_def, box_min), PLACE, .unit = "m", .required = true,
+      .doc = "Lower corner of the box in which liquid is computed again." },
+    { .key = "box.max", VEC3, AT(tobi_nest_def, box_max), PLACE, .unit = "m", .required = true,
+      .doc = "Upper corner of the box." },
+    { .key = "refinement", INT, AT(tobi_nest_def, refinement), .def = { 2 }, RANGE(2, TOBI_REFINEMENT_LIMIT),
+      .unit = "1", .doc = "How many times smaller than the scene's its spacing is." },
+    { .key = "feedback", BOOL, AT(tobi_nest_def, feedback),
+      .doc = "Whether the scene's own liquid takes the nest's velocity in the box, so that it flows around "
+             "what only the nest sees well." },
+    { .key = "follow", TEXT, AT(tobi_nest_def, follow), .unit = "name",
+      .doc = "Name of the body that the box goes along with; none: it stays." },
+    { 0 }
+};
+
+const tobi_param_table tobi_nest_table = {
+    "nest", "An entry of nests: a box in which the liquid is computed again with a smaller spacing.",
+    sizeof(tobi_nest_def), nest_rows };

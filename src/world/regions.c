@@ -328,7 +328,7 @@ static tobi_status note_owners(tobi_world *w, const tobi_system *s, tobi_error *
         }
         const int64_t held = solids ? placed : count_fluid(&s->particles, k);
         const tobi_status status =
-            regions > 0 ? check_placed(kind, name, held, placed, lost, err) : TOBI_OK;
+            regions > 0 && !s->sim->nest.outer ? check_placed(kind, name, held, placed, lost, err) : TOBI_OK;
         TOBI_TRY(tobi_at_key(err, status, "%ss[%d].fill", kind, k));
         TOBI_TRY(note_losses(w, kind, name, lost, err));
     }

@@ -276,10 +276,10 @@ void tobi_scalars_place(tobi_system *s, int64_t i, int inlet)
                                s->box.dimension);
 }
 
-void tobi_scalars_repeat(tobi_system *s, int64_t i, int64_t of)
+void tobi_scalars_repeat(tobi_system *s, int64_t i, const tobi_system *other, int64_t of)
 {
     tobi_double2 *at = tobi_scalars_of(&s->particles);
-    if (at) at[i] = at[of];
+    if (at) at[i] = tobi_scalars_of(&other->particles)[of];
 }
 
 static void start_range(const void *view, int64_t begin, int64_t end)

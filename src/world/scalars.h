@@ -10,8 +10,8 @@ tobi_double2 *tobi_scalars_of(const tobi_particles *p);
 void tobi_scalars_start(tobi_system *s);
 /* Those of a new particle, which has its place and fluid; inlet: opening that lets it in, -1: none. */
 void tobi_scalars_place(tobi_system *s, int64_t i, int inlet);
-/* Those of particle `of`. */
-void tobi_scalars_repeat(tobi_system *s, int64_t i, int64_t of);
+/* Those of particle `of` of a system with the same scalars. */
+void tobi_scalars_repeat(tobi_system *s, int64_t i, const tobi_system *other, int64_t of);
 /* TOBI_NOT_FOUND for the field of a scalar that the world does not have; other fields pass. */
 tobi_status tobi_scalars_know(const struct tobi_world *w, const char *field, tobi_error *err);
 /* Adds a note for each value that changes the weight of the liquid much, and for those that do nothing. */

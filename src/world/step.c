@@ -7,6 +7,7 @@
 #include "world/beside.h"
 #include "world/bodies.h"
 #include "world/motors.h"
+#include "world/nest.h"
 #include "world/openings.h"
 #include "world/runaway.h"
 #include "base/error.h"
@@ -201,6 +202,8 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     tobi_simulation *s = &w->sim;
     int64_t substeps[TOBI_SYSTEM_LIMIT];
     tobi_world_cap_step(w);
+    TOBI_TRY(tobi_nest_remember(w, err));
+    tobi_nest_follow(w);
     TOBI_TRY(remember(w, err));
     TOBI_TRY(tobi_world_sample_drive(w, err));
     TOBI_TRY(choose_dt(w, max_dt, substeps, err));
@@ -220,6 +223,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     TOBI_TRY(tobi_world_kick_bodies(w, err));
     for (int k = 0; k < s->body_count; k++) tobi_body_find_power(&s->bodies[k], s->dt);
     TOBI_TRY(tobi_openings_pass(w, err));
+    TOBI_TRY(tobi_nest_pass(w, err));
     tobi_absorb_finish(w);
     tobi_step_sum_up(w);
     for (int k = 0; k < w->system_count; k++) TOBI_TRY(tobi_runaway_check(&w->system[k], err));

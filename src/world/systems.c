@@ -5,6 +5,7 @@
 #include "world/fit.h"
 #include "base/param.h"
 #include "mpm/mlsmpm.h"
+#include "world/nest.h"
 #include "world/openings.h"
 #include "world/scalars.h"
 #include "world/vessel.h"
@@ -226,7 +227,7 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
         if (!w->started) set_smoothing(w, s);
         for (int r = 0; r < w->region_count; r++)
             if (w->regions[r].system == k) count += tobi_world_guess_particles(w, &w->regions[r]);
-        if (w->started) count = s->particles.count;
+        count = w->started ? s->particles.count : tobi_nest_share(w, count);
         *fluid_particles += count;
         *bytes += estimate_system(w, s, count);
     }
@@ -283,6 +284,7 @@ tobi_status tobi_world_fill_system(tobi_world *w, tobi_system *s, tobi_error *er
     int64_t room = s == &w->system[0] ? tobi_openings_count(w) : 0;
     for (int k = 0; k < w->region_count; k++)
         if (&w->system[w->regions[k].system] == s) room += tobi_region_count(s, &w->regions[k]);
+    room = tobi_nest_share(w, room);
     tobi_particles_free(&s->particles);
     TOBI_TRY(tobi_particles_reserve(&s->particles, s->method->fields, needed_fields(w, s), room, err));
     for (int k = 0; k < w->region_count; k++)
@@ -353,6 +355,8 @@ static tobi_account account(const tobi_world *w)
         tobi_account_add(&a, "neighbour lists", s->cells.list_bytes);
         if (s->method->account && s->state) s->method->account(s, &a);
     }
+    if (w) tobi_account_add(&a, "velocities and marks for nests",
+                            w->seen_room + w->sim.before_room*(int64_t)sizeof *w->sim.before);
     if (w && w->sim.body_count > 0) tobi_account_add(&a, "bodies", count_bodies(w));
     return a;
 }

@@ -100,6 +100,8 @@ void tobi_world_destroy(tobi_world *w)
     free(w->probes);
     tobi_openings_free(w);
     free(w->lines);
+    free(w->seen);
+    free(w->sim.before);
     tobi_constraints_free(&w->sim.constraints);
     tobi_motors_free(w);
     tobi_world_drop_notes(w, 0);

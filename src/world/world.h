@@ -38,6 +38,10 @@ struct tobi_world {
     int32_t *chosen;               /* owned: rows that an outlet takes or copies, of the step at hand */
     int64_t *chosen_block;         /* owned: their number in each block of rows                    */
     int64_t chosen_room, chosen_blocks;
+    struct tobi_world *outer;      /* of a nest: whose liquid surrounds it; NULL                    */
+    int feeds;                     /* 1: that takes the nest's velocity                                */
+    uint8_t *seen;                 /* owned: of outer particles by id, 1: in a nest; NULL: it is none  */
+    int64_t seen_room;
     tobi_beyond *beyond;           /* owned: what lies beyond an outlet, backflow.c               */
     int64_t beyond_room;
     char **notes;                  /* owned texts                                            */

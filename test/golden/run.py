@@ -41,7 +41,7 @@ def hash_files(folder):
     total = hashlib.sha256()
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder)
-        if path.is_file() and name.parts[0] not in APART:
+        if path.is_file() and not APART.intersection(name.parts):
             total.update(str(name).encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest())
     return total.hexdigest()[:16]
 

@@ -122,6 +122,7 @@ static const char head[] =
     "| `resolved.json` | the scene with every default | always |\n"
     "| `inputs.json` | size and SHA-256 of each file that the scene names, and from which time on (s) the "
     "run has read it so | with such files |\n"
+    "| `nests/NAME/` | the same files, of a [nest](nests.md) | with nests |\n"
     "| `summary.json` | see below | at the end |\n"
     "| `plots/`, `movie.mp4`, `picture.png`, `report.html` | curves, movie, picture, report | by "
     "`tobiuo plot`, `movie`, `picture`, `report` |\n"

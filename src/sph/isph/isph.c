@@ -389,7 +389,7 @@ void isph_move(tobi_system *s)
     double t[TOBI_TOTALS], clock = tobi_clock();
     measure_forces(s, m, &clock);
     launch(s, m, m->kernel->isph_shift, t);
-    s->info.divergence_mean = t[0]/(double)s->particles.count;
+    s->info.divergence_mean = t[0]/sph_rows(s);
     s->info.divergence_max = t[6];
     if (m->def.xsph > 0) launch(s, m, m->kernel->isph_xsph, NULL);
     launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
@@ -481,6 +481,7 @@ const tobi_method tobi_isph = {
     .begin = isph_begin,
     .packs_lists = 1,          /* the matrix takes most of the time, and of the memory with the lists */
     .fills_pipes = 1,
+    .nests = 1,
     .rough_forces = 1,
     ISPH_VERBS
 };

@@ -9,11 +9,14 @@
 #include <string.h>
 
 #define RADIUS 3.0          /* of the fit, spacings */
+#define NARROW 2.0          /* the same in the midst of liquid */
+#define MOVED 1.0           /* spacings that particles may have gone since the last sort */
 #define DRY 0.1             /* share of the kernel, a place with less before it is dry */
 #define ON_WALL 0.5         /* a point nearer to a surface than this sits on it, spacings */
-enum { BASIS = 4, SCALARS = 4, VALUES = SCALARS + TOBI_SCALAR_LIMIT };
+enum { BASIS = 4, SCALARS = 4, CHANGES = SCALARS + TOBI_SCALAR_LIMIT, VALUES = CHANGES + 3 };
 
-/* Normal equations of the fit: basis 1, x, y, z in radii; right sides pressure, velocity and scalars. */
+/* Normal equations of the fit: basis 1, x, y, z in radii; right sides pressure, velocity, scalars and, where
+   nests ask for them, changes of velocity in the last step. */
 typedef struct fit {
     const tobi_system *s;
     double radius, matrix[BASIS][BASIS], right[BASIS][VALUES];
@@ -29,8 +32,10 @@ static void add_to_fit(void *user, int64_t i, const double d[3])
     const double basis[BASIS] = {1, d[0]/f->radius, d[1]/f->radius, d[2]/f->radius};
     const tobi_float4 *v = &f->s->particles.velocity[i];
     const sph_fields *own = sph_fields_of(&f->s->particles);
+    const tobi_float4 *before = tobi_simulation_before(f->s->sim, f->s->particles.id[i]);
     const double value[VALUES] = {own->pressure[i], v->x, v->y, v->z, own->scalars ? own->scalars[i].x : 0,
-                                  own->scalars ? own->scalars[i].y : 0};
+                                  own->scalars ? own->scalars[i].y : 0, before ? v->x - before->x : 0,
+                                  before ? v->y - before->y : 0, before ? v->z - before->z : 0};
     f->count++;
     for (int a = 0; a < BASIS; a++) {
         for (int b = 0; b < BASIS; b++) f->matrix[a][b] += w*basis[a]*basis[b];
@@ -207,12 +212,12 @@ static double measure_wall(membrane *m)
 }
 
 /* Pressure and velocity at a place in box coordinates; the number of particles that were used. */
-static int fit_values(const tobi_system *s, const double local[3], double value[VALUES])
+static int fit_values(const tobi_system *s, const double local[3], double radius, double value[VALUES])
 {
-    fit f = {.s = s, .radius = RADIUS*s->smoothing.spacing};
+    fit f = {.s = s, .radius = radius*s->smoothing.spacing};
     int n = 1 + s->box.dimension;
     memset(value, 0, VALUES*sizeof *value);
-    sph_range r = sph_cells_around(s, local, f.radius + s->smoothing.spacing);
+    sph_range r = sph_cells_around(s, local, f.radius + MOVED*s->smoothing.spacing);
     sph_visit(s, local, &r, add_to_fit, &f);
     fit full = f;
     if (f.count >= 2*n && eliminate(&full, n)) substitute(&full, n, value);
@@ -232,7 +237,7 @@ int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, 
     double local[3], value[VALUES];
     membrane wall;
     find_local(s, x, local);
-    const int count = fit_values(s, local, value);
+    const int count = fit_values(s, local, RADIUS, value);
     *pressure = value[0];
     memcpy(velocity, value + 1, 3*sizeof *velocity);
     memcpy(scalar, value + SCALARS, TOBI_SCALAR_LIMIT*sizeof *scalar);
@@ -241,12 +246,24 @@ int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, 
     return count;
 }
 
+int tobi_probe_liquid(const tobi_system *s, const double local[3], double *pressure, double velocity[3],
+                      double acceleration[3], double scalar[TOBI_SCALAR_LIMIT])
+{
+    double value[VALUES];
+    const int count = fit_values(s, local, NARROW, value);
+    *pressure = value[0] + (count > 0 ? sph_hydrostatic(s, local) : 0);
+    memcpy(velocity, value + 1, 3*sizeof *velocity);
+    memcpy(scalar, value + SCALARS, TOBI_SCALAR_LIMIT*sizeof *scalar);
+    for (int a = 0; a < 3; a++) acceleration[a] = s->dt > 0 ? value[CHANGES + a]/s->dt : 0;
+    return count;
+}
+
 double tobi_probe_place(const tobi_system *s, const double x[3], double normal[3])
 {
     double local[3], value[VALUES];
     membrane wall;
     find_local(s, x, local);
-    const int count = fit_values(s, local, value);
+    const int count = fit_values(s, local, RADIUS, value);
     if (count == 0) return 0;
     if (!find_surface(s, local, &wall)) return value[0] + sph_hydrostatic(s, local);
     memcpy(normal, wall.normal, sizeof wall.normal);

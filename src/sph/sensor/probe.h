@@ -12,6 +12,11 @@
 int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, double velocity[3],
                      double scalar[TOBI_SCALAR_LIMIT]);
 
+/* The same in the liquid, whatever walls are near, with the acceleration of the liquid in the last step,
+   m/s2, which is 0 unless the world has nests. local: m, from the lower corner of the domain. */
+int tobi_probe_liquid(const tobi_system *s, const double local[3], double *pressure, double velocity[3],
+                      double acceleration[3], double scalar[TOBI_SCALAR_LIMIT]);
+
 /* Pressure at a place, Pa, without the mean over a disc; on a side or a body, *normal becomes its
    direction out
    of the wall. 0 where there is no fluid. */
