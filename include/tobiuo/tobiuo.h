@@ -26,6 +26,7 @@
    them. Numbers that are not finite, and speeds above TOBI_SPEED_LIMIT, are refused with body and time. */
 #ifndef TOBIUO_H
 #define TOBIUO_H
+#include "tobiuo/nest.h"
 #include "tobiuo/types.h"
 
 #ifdef __cplusplus

@@ -8,7 +8,6 @@
 #include "tobiuo/base.h"
 #include "tobiuo/kinds.h"
 #include "tobiuo/methods.h"
-#include "tobiuo/nest.h"
 #include "tobiuo/outline.h"
 #include "tobiuo/porous.h"
 #include "tobiuo/scalar.h"

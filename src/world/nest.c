@@ -47,13 +47,13 @@ static tobi_status check_box(const tobi_world *outer, const tobi_nest_def *def, 
         const double low = box->lower[a], high = low + box->size[a], slack = 1e-9*box->size[a];
         const double side = def->box_max[a] - def->box_min[a], d = outer->sim.def.spacing;
         if (def->box_min[a] < low - slack || def->box_max[a] > high + slack) {
-            snprintf(why, sizeof why, "the box reaches from %.6g to %.6g m in %c, the domain from %.6g to "
-                     "%.6g m", def->box_min[a], def->box_max[a], "xyz"[a], low, high);
+            snprintf(why, sizeof why, tr("the box reaches from %.6g to %.6g m in %c, the domain from %.6g to "
+                     "%.6g m"), def->box_min[a], def->box_max[a], "xyz"[a], low, high);
             return refuse(def->box_min[a] < low - slack ? "box.min" : "box.max", def, why, err);
         }
         if (side >= LEAST*d) continue;
-        snprintf(why, sizeof why, "the box is %.6g m long in %c; allowed are %g spacings of the scene, %.6g "
-                 "m, or more", side, "xyz"[a], LEAST, LEAST*d);
+        snprintf(why, sizeof why, tr("the box is %.6g m long in %c; allowed are %g spacings of the scene, %.6g "
+                 "m, or more"), side, "xyz"[a], LEAST, LEAST*d);
         return refuse("box.max", def, why, err);
     }
     return TOBI_OK;
@@ -67,8 +67,8 @@ static tobi_status check_periods(const tobi_nest *n, const tobi_box *box, const 
     for (int a = 0; a < box->dimension; a++) {
         const int low = isinf(n->lower[a]), high = isinf(n->upper[a]);
         if (!box->periodic[a] || low == high) continue;
-        snprintf(why, sizeof why, "the box meets one of the two periodic sides in %c; allowed is one that "
-                 "meets both, or stays %.4g m away from them", "xyz"[a], n->rim);
+        snprintf(why, sizeof why, tr("the box meets one of the two periodic sides in %c; allowed is one that "
+                 "meets both, or stays %.4g m away from them"), "xyz"[a], n->rim);
         return refuse(low ? "box.min" : "box.max", def, why, err);
     }
     return TOBI_OK;
@@ -123,8 +123,8 @@ static tobi_status check_openings(const tobi_world *outer, const tobi_nest *n, c
         const double wide = o->radius > 0 ? o->radius : hypot(o->half[0], o->half[1]);
         const double reach = wide + (o->outlet ? tobi_outlet_depth(o, &s->smoothing) : o->depth);
         if (tobi_nest_outside(n, s->box.dimension, o->centre) > n->rim + reach) continue;
-        snprintf(why, sizeof why, "%s '%s' may lie in the box or within %.4g m of it, where the nest has no "
-                 "inlets and outlets", o->outlet ? "outlet" : "inlet", o->name, n->rim + reach);
+        snprintf(why, sizeof why, tr("%s '%s' may lie in the box or within %.4g m of it, where the nest has no "
+                 "inlets and outlets"), o->outlet ? tr("outlet") : tr("inlet"), o->name, n->rim + reach);
         return refuse("box.min", def, why, err);
     }
     return TOBI_OK;
@@ -160,7 +160,7 @@ static tobi_status find_body(const tobi_world *outer, const tobi_nest_def *def, 
     n->body = def->follow ? tobi_world_find_body(outer, def->follow) : -1;
     if (n->body >= 0) find_middle(&outer->sim, n->body, n->middle);
     if (n->body >= 0 || !def->follow) return TOBI_OK;
-    snprintf(why, sizeof why, "there is no body '%.60s' to follow", def->follow);
+    snprintf(why, sizeof why, tr("there is no body '%.60s' to follow"), def->follow);
     return refuse("follow", def, why, err);
 }
 
