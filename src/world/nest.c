@@ -52,8 +52,8 @@ static tobi_status check_box(const tobi_world *outer, const tobi_nest_def *def, 
             return refuse(def->box_min[a] < low - slack ? "box.min" : "box.max", def, why, err);
         }
         if (side >= LEAST*d) continue;
-        snprintf(why, sizeof why, tr("the box is %.6g m long in %c; allowed are %g spacings of the scene, %.6g "
-                 "m, or more"), side, "xyz"[a], LEAST, LEAST*d);
+        snprintf(why, sizeof why, tr("the box is %.6g m long in %c; allowed are %g spacings of the scene, "
+                                     "%.6g m, or more"), side, "xyz"[a], LEAST, LEAST*d);
         return refuse("box.max", def, why, err);
     }
     return TOBI_OK;
@@ -123,8 +123,9 @@ static tobi_status check_openings(const tobi_world *outer, const tobi_nest *n, c
         const double wide = o->radius > 0 ? o->radius : hypot(o->half[0], o->half[1]);
         const double reach = wide + (o->outlet ? tobi_outlet_depth(o, &s->smoothing) : o->depth);
         if (tobi_nest_outside(n, s->box.dimension, o->centre) > n->rim + reach) continue;
-        snprintf(why, sizeof why, tr("%s '%s' may lie in the box or within %.4g m of it, where the nest has no "
-                 "inlets and outlets"), o->outlet ? tr("outlet") : tr("inlet"), o->name, n->rim + reach);
+        snprintf(why, sizeof why, tr("%s '%s' may lie in the box or within %.4g m of it, where the nest has "
+                                     "no inlets and outlets"),
+                 o->outlet ? tr("outlet") : tr("inlet"), o->name, n->rim + reach);
         return refuse("box.min", def, why, err);
     }
     return TOBI_OK;
