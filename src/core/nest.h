@@ -8,6 +8,7 @@ struct tobi_system;
 typedef struct tobi_nest {
     const struct tobi_system *outer; /* whose liquid surrounds the box; NULL: the world is no nest      */
     double lower[3], upper[3];       /* m: the box, without end where it meets a side of the domain     */
+    double lift;                     /* Pa: that the nest's pressures are higher by                     */
     double rim;                      /* m: how far the rim reaches beyond the box                       */
     double start[2][3];              /* m: the corners at time 0                                        */
     int body;                        /* of the outer world, that the box goes along with; -1: it stays  */

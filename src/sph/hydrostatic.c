@@ -32,7 +32,8 @@ double sph_hydrostatic(const tobi_system *s, const double x[3])
     double sum = 0;
     for (int a = 0; a < s->box.dimension; a++)
         sum += (s->sim->def.gravity[a] - s->gravity[a])*(x[a] - 0.5*s->box.size[a]);
-    return (sum == 0 ? 0 : s->fluid[0].density*sum) + tobi_reference_pressure(&sph_of(s)->reference, x);
+    return (sum == 0 ? 0 : s->fluid[0].density*sum) + tobi_reference_pressure(&sph_of(s)->reference, x) -
+           s->sim->nest.lift;
 }
 
 double sph_still_pressure(const tobi_system *s, const tobi_body *b, int64_t point, const double *x)

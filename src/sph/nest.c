@@ -33,6 +33,8 @@ static void mark_row(const tobi_system *s, int64_t i, const double x[3])
     if (f->scalars) f->scalars[i] = (tobi_double2){ scalar[0], scalar[1] };
 }
 
+/* Of the outer liquid's suction and twice its dynamic pressure. */
+static const double LIFT = 2;
 /* Outer spacings: nearer to the sides of the box the outer liquid keeps its velocity. */
 static const double MARGIN = 2;
 
@@ -46,8 +48,33 @@ static void mark_range(const void *view, int64_t begin, int64_t end)
     }
 }
 
+/* totals: [6] the most, over the rows, of what the pressure is below 0, Pa. */
+static void find_suction(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    const float *pressure = sph_fields_of(&s->particles)->pressure;
+    for (int64_t i = begin; i < end; i++) {
+        const tobi_double3 *p = &s->particles.position[i];
+        const double x[3] = { p->x, p->y, p->z };
+        totals[6] = fmax(totals[6], -pressure[i] - sph_hydrostatic(s, x));
+    }
+}
+
+/* Without a free surface outside, pressure is known but for a constant, and may be below 0; in the nest a void
+   would grow there. So all pressures of the nest are lifted above 0, and read without the lift. */
+static void lift(tobi_system *s)
+{
+    const tobi_system *outer = s->sim->nest.outer;
+    double t[TOBI_TOTALS];
+    s->sim->nest.lift = 0;
+    if (!sph_of(outer)->full) return;
+    tobi_launch(&s->sim->exec, TOBI_HOST(find_suction, 0, 1), outer, 0, outer->particles.count, t);
+    s->sim->nest.lift = LIFT*(t[6] + s->fluid[0].density*outer->info.speed_max*outer->info.speed_max);
+}
+
 void sph_nest_mark(tobi_system *s)
 {
+    if (s->sim->nest.outer) lift(s);
     if (s->sim->nest.outer) tobi_loop(s->sim->exec.threads, s->particles.count, 512, mark_range, s);
 }
 

@@ -240,8 +240,8 @@ static int has_no_room(const tobi_system *s)
    vessel is open; where there is hardly room for a surface it takes more of them. */
 static const double SURFACE = 0.1, SURFACE_WITHOUT_ROOM = 0.5;
 
-tobi_status sph_classify_vessel(tobi_system *s, sph_view *v, const sph_kernels *k, double *vessel,
-                                 double *clock, tobi_error *err)
+static tobi_status classify_vessel(tobi_system *s, sph_view *v, const sph_kernels *k, double *vessel,
+                                   double *clock, tobi_error *err)
 {
     double t[TOBI_TOTALS], count = sph_rows(s);
     if (*vessel != SPH_VESSEL_UNKNOWN) return TOBI_OK;
@@ -254,6 +254,14 @@ tobi_status sph_classify_vessel(tobi_system *s, sph_view *v, const sph_kernels *
     const double across = s->box.dimension == 3 ? cbrt(count*count) : sqrt(count);
     const int full = t[3] < (has_no_room(s) ? SURFACE_WITHOUT_ROOM : SURFACE)*across;
     if (!sph_has_openings(s)) *vessel = full ? SPH_VESSEL_FULL : SPH_VESSEL_OPEN;
+    return TOBI_OK;
+}
+
+tobi_status sph_classify_vessel(tobi_system *s, sph_view *v, const sph_kernels *k, double *vessel,
+                                double *clock, tobi_error *err)
+{
+    TOBI_TRY(classify_vessel(s, v, k, vessel, clock, err));
+    sph_of(s)->full = *vessel == SPH_VESSEL_FULL;
     return TOBI_OK;
 }
 
