@@ -60,8 +60,8 @@ static void find_suction(const void *view, int64_t begin, int64_t end, double *t
     }
 }
 
-/* Without a free surface outside, pressure is known but for a constant, and may be below 0; in the nest a void
-   would grow there. So all pressures of the nest are lifted above 0, and read without the lift. */
+/* Without a free surface outside, pressure is known but for a constant, and may be below 0; in the nest a
+   void would grow there. So all pressures of the nest are lifted above 0, and read without the lift. */
 static void lift(tobi_system *s)
 {
     const tobi_system *outer = s->sim->nest.outer;
