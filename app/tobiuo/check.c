@@ -322,7 +322,8 @@ static int check_world(tobi_scene *scene)
     trial t;
     try_steps(tobi_scene_world_def(scene), world, c.fluid <= START_LIMIT, &t);
     print_scene(scene, world, &t);
-    if (print_nests(scene, nests, &share, &bytes, &err) != TOBI_OK)
+    if (print_nests(scene, nests, &share, &bytes, &err) != TOBI_OK ||
+        tobi_nests_estimate(nests, tobi_scene_world_def(scene)->end_time, &c.size, &err) != TOBI_OK)
         return end_check(scene, world, nests, &err);
     const double machine = machine_bytes(), needed = all_bytes(&c, world) + bytes;
     if (c.fluid > 0) {

@@ -391,6 +391,7 @@ static void write_page(const report *r)
     fputs("</p>\n", r->file);
     write_facts(r);
     write_trust(r);
+    write_nests(r);
     write_pictures(r);
     write_plots(r);
     write_tables(r);
@@ -420,23 +421,35 @@ static int write_file(report *r, const char *out)
     return code;
 }
 
+/* name NULL: DIR/report.html. make: of pages of its nests; NULL: a nest has none. */
+static int make_report(const char *dir, const char *name, double from, int force,
+                       int (*make)(const char *dir, double from, int force))
+{
+    report r = { .dir = dir, .from = from, .has_links = !name };
+    char *out = name ? strdup(name) : join(dir, "report.html");
+    int code = out ? read_run(&r) : complain("out of memory"), inner = 0;
+    if (code == 0 && !force && access(out, F_OK) == 0) code = complain("%s exists; --force replaces it", out);
+    if (code == 0 && !name && make) inner = report_nests(&r, make, force);
+    if (code == 0) code = write_file(&r, out);
+    if (code == 0) printf("report: %s\n", out);
+    free_run(&r);
+    free(out);
+    return code ? code : inner;
+}
+
+static int make_inner(const char *dir, double from, int force)
+{
+    return make_report(dir, NULL, from, force, NULL);
+}
+
 const struct argp report_argp = { .options = options, .parser = parse, .args_doc = "DIR",
     .doc = "Write one page about the run in DIR, for any browser: what to trust, pictures, movie, "
         "plots, tables, "
-           "times. Plots need gnuplot, the movie ffmpeg." };
+           "times, and a page of each nest. Plots need gnuplot, the movie ffmpeg." };
 
 int tobiuo_report(int argc, char **argv)
 {
     report_options o = { 0 };
     parse_arguments(&report_argp, argc, argv, &o);
-    report r = { .dir = o.dir, .from = o.from };
-    char *out = o.out ? strdup(o.out) : join(o.dir, "report.html");
-    int code = out ? read_run(&r) : complain("out of memory");
-    if (code == 0 && !o.force && access(out, F_OK) == 0) code = complain("%s exists; --force replaces "
-        "it", out);
-    if (code == 0) code = write_file(&r, out);
-    if (code == 0) printf("report: %s\n", out);
-    free_run(&r);
-    free(out);
-    return code;
+    return make_report(o.dir, o.out, o.from, o.force, make_inner);
 }

@@ -14,6 +14,7 @@ typedef struct report {
     tobi_scene *loaded;
     char why[300];                      /* why there is no world                                  */
     table history, bodies, probes, lines, joints, zones, scalars;   /* without columns: no such file */
+    int has_links;                      /* the page lies in dir: to pages of nests                */
     double from;                        /* s: means and extremes are of the time from it on        */
     int dimension;
     double spacing;                     /* m; 0: not known                                        */
@@ -35,6 +36,9 @@ void write_tables(const report *r);
 void write_times(const report *r);
 /* report_waves.c: height and period of the waves at level sensors. */
 void write_waves(const report *r);
+/* report_nests.c: a page for each nest, a table of them. */
+int report_nests(const report *r, int (*make)(const char *dir, double from, int force), int force);
+void write_nests(const report *r);
 /* report_trust.c */
 void write_trust(const report *r);
 

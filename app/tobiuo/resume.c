@@ -1,6 +1,7 @@
 /* tobiuo resume DIR */
 #define _GNU_SOURCE
 #include "app.h"
+#include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,6 +44,8 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
     int code;
     if (tobi_nests_create(scene, world, &nests, &err) != TOBI_OK) {
         code = complain("%s", err.text);
+    } else if (tobi_nests_prepare(nests, o->dir, TOBI_NESTS_RESUME, &err) != TOBI_OK) {
+        code = complain("%s", err.text);
     } else if (tobi_run_resume(world, tobi_scene_output_def(scene), o->dir, &run, &err) != TOBI_OK) {
         code = complain("%s", err.text);
     } else if (tobi_nests_record(nests, run, o->dir, TOBI_NESTS_RESUME, &err) != TOBI_OK) {
@@ -66,6 +69,35 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
     return code;
 }
 
+/* Whether the scene in this file has a nest of the name. */
+static int has_nest(const char *path, const char *name)
+{
+    json_t *scene = json_load_file(path, 0, NULL);
+    const json_t *list = json_object_get(scene, "nests");
+    int found = 0;
+    for (size_t k = 0; k < json_array_size(list); k++) {
+        const char *one = json_string_value(json_object_get(json_array_get(list, k), "name"));
+        found |= one && strcmp(one, name) == 0;
+    }
+    json_decref(scene);
+    return found;
+}
+
+/* RUN/nests/NAME becomes RUN, if that has such a nest; else NULL. The caller frees it. */
+static char *find_outer(const char *dir)
+{
+    char *real = realpath(dir, NULL), *name = real ? strrchr(real, '/') : NULL, *path = NULL;
+    if (name) *name++ = '\0';
+    char *parent = name ? strrchr(real, '/') : NULL;
+    int found = parent && strcmp(parent, "/nests") == 0;
+    if (found) *parent = '\0';
+    found = found && asprintf(&path, "%s/resolved.json", real) >= 0 && has_nest(path, name);
+    free(path);
+    if (found) return real;
+    free(real);
+    return NULL;
+}
+
 const struct argp resume_argp = { .options = options, .parser = parse, .args_doc = "DIR",
     .doc = "Go on with the run in DIR from its last whole checkpoint." };
 
@@ -78,6 +110,14 @@ int tobiuo_resume(int argc, char **argv)
     if (access(path, F_OK) != 0) {
         free(path);
         return complain_run(o.dir, tr("there is no run to resume (no resolved.json)"));
+    }
+    char *outer = find_outer(o.dir), quoted[SHELL_WORD];
+    if (outer) {
+        complain("%s is a nest, which goes on with the run around it: tobiuo resume %s", o.dir,
+                 shell_word(outer, quoted));
+        free(outer);
+        free(path);
+        return EXIT_ERROR;
     }
     tobi_scene *scene = load_scene(path, &o.set);
     /* What changed in a motion or a table holds from here on; what has been computed does not follow it. */

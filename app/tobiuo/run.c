@@ -77,12 +77,13 @@ char *results_path(const tobi_scene *scene, const char *out)
 }
 
 /* Before anything is made. */
-static int check_size(const tobi_scene *scene, tobi_world *world, const run_options *o, const char *dir,
-                      tobi_run_size *size)
+static int check_size(const tobi_scene *scene, tobi_world *world, tobi_nests *nests, const run_options *o,
+                      const char *dir, tobi_run_size *size)
 {
     tobi_error err = { 0 };
-    if (tobi_run_estimate(world, tobi_scene_output_def(scene), tobi_scene_world_def(scene)->end_time, size,
-                          &err) != TOBI_OK)
+    const double end = tobi_scene_world_def(scene)->end_time;
+    if (tobi_run_estimate(world, tobi_scene_output_def(scene), end, size, &err) != TOBI_OK ||
+        tobi_nests_estimate(nests, end, size, &err) != TOBI_OK)
         return complain("%s", err.text);
     char *objection = o->force ? NULL : size_objection(size, dir);
     const int code = objection ? complain("%s", objection) : 0;
@@ -121,10 +122,12 @@ static int record(tobi_scene *scene, tobi_world *world, tobi_nests *nests, const
     if (waits) output.frames = 0;
     char *resolved = tobi_scene_resolved(scene);
     if (!resolved) return complain("out of memory");
-    tobi_status status = tobi_run_create(world, &output, dir, o->force, resolved, &run, &err);
-    free(resolved);
+    const int how = o->force ? TOBI_NESTS_REPLACE : TOBI_NESTS_CREATE;
+    tobi_status status = tobi_nests_prepare(nests, dir, how, &err);
     if (status == TOBI_OK)
-        status = tobi_nests_record(nests, run, dir, o->force ? TOBI_NESTS_REPLACE : TOBI_NESTS_CREATE, &err);
+        status = tobi_run_create(world, &output, dir, o->force, resolved, &run, &err);
+    free(resolved);
+    if (status == TOBI_OK) status = tobi_nests_record(nests, run, dir, how, &err);
     if (status == TOBI_OK) status = tobi_scene_note_files(scene, dir, 0, &err);
     if (!o->quiet && status == TOBI_OK) print_size(size, dir);
     if (!o->quiet) print_notes(world, stderr, tr("tobiuo: note: "));
@@ -178,7 +181,7 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     if (tobi_scene_import_table(scene) && !o->quiet)
         printf(tr("a scene of %s; \"tobiuo check\" lists what became of each of its keys\n"),
                tobi_scene_import_program(scene));
-    int code = dir ? check_size(scene, world, o, dir, &size) : complain("out of memory");
+    int code = dir ? check_size(scene, world, nests, o, dir, &size) : complain("out of memory");
     if (code == 0 && o->surface && tobi_scene_world_def(scene)->dimension != 3)
         code = complain("--surface: a run in 2-D has no surface");
     if (code == 0 && o->foam && foam_objection(scene, world))

@@ -89,6 +89,9 @@ TOBI_API tobi_status tobi_scene_import(const char *old_path, const char *new_pat
 /* The nests of a scene, each a world of its own (tobi_world_nest); none is fine. The scene and the outer
    world must outlive them. Fails as tobi_scene_build and tobi_world_nest do. */
 typedef struct tobi_nests tobi_nests;
+enum { TOBI_NESTS_CREATE, TOBI_NESTS_REPLACE, TOBI_NESTS_RESUME };
+struct tobi_run;
+struct tobi_run_size;
 TOBI_API tobi_status tobi_nests_create(tobi_scene *scene, tobi_world *outer, tobi_nests **nests,
                                        tobi_error *err);
 /* 0 for NULL. */
@@ -97,12 +100,21 @@ TOBI_API int tobi_nests_count(const tobi_nests *nests);
 TOBI_API tobi_world *tobi_nests_world(const tobi_nests *nests, int nest, const char **name);
 /* m: of its particles; 0 past the end. */
 TOBI_API double tobi_nests_spacing(const tobi_nests *nests, int nest);
+/* Steps each to the time of the outer world, and feeds that: before the first and after each step of it
+   (tobi_world_step_to), without a run. Fails as tobi_world_step does; called again, it goes on. */
+TOBI_API tobi_status tobi_nests_follow(tobi_nests *nests, tobi_error *err);
+/* Before the run of the outer world is made in dir: starts it and them, and looks whether tobi_nests_record
+   could do its part there, so that a mistake costs no results. Fails as that and tobi_world_start do. */
+TOBI_API tobi_status tobi_nests_prepare(tobi_nests *nests, const char *dir, int how, tobi_error *err);
+/* Adds files and bytes of their runs up to `end`, s, as tobi_run_estimate finds them, and the memory. */
+TOBI_API tobi_status tobi_nests_estimate(tobi_nests *nests, double end, struct tobi_run_size *size,
+                                         tobi_error *err);
 /* Records each in the folder nests/NAME of dir, where `run` records the outer world: from then on `run` steps
    them. Fails as tobi_run_create and tobi_run_resume do. */
-enum { TOBI_NESTS_CREATE, TOBI_NESTS_REPLACE, TOBI_NESTS_RESUME };
-struct tobi_run;
 TOBI_API tobi_status tobi_nests_record(tobi_nests *nests, struct tobi_run *run, const char *dir, int how,
                                        tobi_error *err);
+/* Frees their runs; the worlds stay. After the run of the outer world; NULL is fine. */
+TOBI_API void tobi_nests_close(tobi_nests *nests);
 /* After the run of the outer world; NULL is fine. */
 TOBI_API void tobi_nests_free(tobi_nests *nests);
 

@@ -144,6 +144,9 @@ TOBI_API tobi_status tobi_world_add_note(tobi_world *world, const char *text, to
    outlive it. TOBI_INVALID, TOBI_UNSUPPORTED in words (docs/decisions/0157-nests.md). */
 TOBI_API tobi_status tobi_world_nest(tobi_world *world, tobi_world *outer, const tobi_nest_def *def,
                                      tobi_error *err);
+/* One of the steps that tobi_world_advance takes to time t, s, which the last one hits exactly: the nests of
+   the world follow after each. */
+TOBI_API tobi_status tobi_world_step_to(tobi_world *world, double t, tobi_error *err);
 /* Of a nest with feedback: gives the outer liquid in the box, two outer spacings from its sides, the velocity
    that the nest has; else nothing. TOBI_INVALID for a world that is no nest. */
 TOBI_API tobi_status tobi_world_feed(tobi_world *nest, tobi_error *err);

@@ -12,7 +12,7 @@ from .results import Moment, Results, read_table
 from .run import run
 from .sampling import Means, Sample, sample
 from .scene import check, describe, shipped
-from .world import World
+from .world import Nest, World
 
-__all__ = ["Error", "Means", "Moment", "Results", "Sample", "World", "__version__", "check", "describe", "read_table",
-           "run", "sample", "set_language", "shipped"]
+__all__ = ["Error", "Means", "Moment", "Nest", "Results", "Sample", "World", "__version__", "check", "describe",
+           "read_table", "run", "sample", "set_language", "shipped"]

@@ -1,5 +1,6 @@
 """What a run has written, as arrays."""
 import csv
+import json
 import os
 import pathlib
 from dataclasses import dataclass
@@ -31,6 +32,14 @@ class Results:
         out = ffi.new("tobi_results **")
         call(lib.tobi_results_open, os.fspath(folder).encode(), out)
         self._results = ffi.gc(out[0], lib.tobi_results_free)
+
+    @property
+    def nests(self):
+        """The Results of each nest by its name."""
+        scene = self.folder/"resolved.json"
+        entries = json.loads(scene.read_text(encoding="utf-8")).get("nests") if scene.exists() else None
+        names = [entry["name"] for entry in entries or []]
+        return {name: Results(self.folder/"nests"/name) for name in names if (self.folder/"nests"/name).is_dir()}
 
     def refresh(self):
         call(lib.tobi_results_refresh, self._results)

@@ -18,13 +18,17 @@ def run(scene, out, set=None, name=None, until=None, force=False, each_step=None
     resolved = lib.tobi_scene_resolved(world._scene)
     handle = ffi.new("tobi_run **")
     output = lib.tobi_scene_output_def(world._scene)
+    nests, how = world._made_nests[0], lib.TOBI_NESTS_REPLACE if force else lib.TOBI_NESTS_CREATE
     try:
+        world._call(lambda w, error: lib.tobi_nests_prepare(nests, os.fspath(out).encode(), how, error))
         world._call(lambda w, error: lib.tobi_run_create(w, output, os.fspath(out).encode(), int(force), resolved,
                                                          handle, error))
     finally:
         take_text(resolved)
-    outcome = "interrupted"
+    outcome = "failed"
     try:
+        world._call(lambda w, error: lib.tobi_nests_record(nests, handle[0], os.fspath(out).encode(), how, error))
+        outcome = "interrupted"
         world._call(lambda w, error: lib.tobi_scene_note_files(world._scene, os.fspath(out).encode(), 0, error))
         while not lib.tobi_run_done(handle[0], end):
             if each_step and each_step(world) is False:
@@ -47,5 +51,6 @@ def _end(world, handle, outcome):
         lib.tobi_run_checkpoint(handle, error)
     status = lib.tobi_run_finish(handle, outcome.encode(), error)
     lib.tobi_run_free(handle)
+    lib.tobi_nests_close(world._made_nests[0])
     if status != lib.TOBI_OK and outcome == "complete":
         raise Error(ffi.string(error.text).decode())

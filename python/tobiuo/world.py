@@ -103,9 +103,20 @@ class World:
         self._raised, self._motions = None, {}
         self._scene = scenes.load(scene, set, name)
         self._handle = scenes.build(self._scene)
+        self._made_nests = ffi.new("tobi_nests **")
+        self._call(lambda w, error: lib.tobi_nests_create(self._scene, w, self._made_nests, error))
         # Asked between two iterations: there Python looks for Ctrl-C.
         self._stop = ffi.callback("int(void *)", lambda user: 0, error=1, onerror=self._remember)
-        lib.tobi_world_set_stop(self._world, self._stop, ffi.NULL)
+        for world in [self._world, *(nest._world for nest in self.nests.values())]:
+            lib.tobi_world_set_stop(world, self._stop, ffi.NULL)
+
+    @property
+    def nests(self):
+        """Each Nest of the scene by its name. They go along with each step."""
+        made, name, found = self._made_nests[0], ffi.new("const char **"), {}
+        while self._world and (world := lib.tobi_nests_world(made, len(found), name)) != ffi.NULL:
+            found[text_of(name[0])] = world
+        return _Named(list(found), lambda k: Nest(self, list(found)[k], list(found.values())[k]))
 
     @property
     def bodies(self):
@@ -209,7 +220,9 @@ class World:
     def close(self):
         """Frees the memory. The world cannot be used afterwards."""
         if self._handle is not None:
-            lib.tobi_world_destroy(self._world)
+            world = self._world                     # not in a call
+            lib.tobi_nests_free(self._made_nests[0])
+            lib.tobi_world_destroy(world)
             lib.tobi_scene_free(self._scene)
         self._handle = None
 
@@ -240,12 +253,31 @@ class World:
 
     def step(self, max_dt=0):
         """One time step, not longer than max_dt (s; 0: no bound). Returns what it did, as `info`."""
+        self._follow()                              # a nest that Ctrl-C has stopped
         self._call(lib.tobi_world_step, float(max_dt), ffi.NULL)
+        self._follow()
         return self.info
 
     def advance(self, time):
         """Steps until `time` (s), which is hit exactly."""
-        self._call(lib.tobi_world_advance, float(time), ffi.NULL)
+        if not self.nests:
+            self._call(lib.tobi_world_advance, float(time), ffi.NULL)
+            return
+        self._follow()
+        while not self.time >= time:
+            self._call(lib.tobi_world_step_to, float(time))
+            self._follow()
+
+    def _catch_up(self):
+        """Nests that Ctrl-C or a motion has stopped, before something changes; one that fails stays behind."""
+        try:
+            if self.nests and self.time > 0:
+                self._follow()
+        except Exception:
+            self._raised = None
+
+    def _follow(self):
+        self._call(lambda world, error: lib.tobi_nests_follow(self._made_nests[0], error))
 
     @property
     def info(self):
@@ -313,7 +345,10 @@ class World:
 
     def set_gravity(self, gravity):
         """m/s2, from the next step on."""
+        self._catch_up()
         self._call(lib.tobi_world_set_gravity, vector(gravity, "gravity"))
+        for nest in self.nests.values():
+            nest._call(lib.tobi_world_set_gravity, vector(gravity, "gravity"))
 
     def _set_motion(self, body, function):
         def move(user, t, n, rest, out, error):
@@ -323,17 +358,28 @@ class World:
             ffi.memmove(out, np.ascontiguousarray(places), 24*n)
             return lib.TOBI_OK
         made = ffi.callback("tobi_motion_fn", move, error=lib.TOBI_SCRIPT, onerror=self._remember)
+        self._catch_up()
         self._call(lib.tobi_world_set_body_motion, body, made, ffi.NULL)
-        self._motions[body] = made
+        previous, self._motions[body] = self._motions.get(body), made
+        for nest in self.nests.values():            # they have called the one before until here
+            nest._call(lib.tobi_world_set_body_motion, body, made, ffi.NULL)
+        del previous
 
     # --- state ------------------------------------------------------------------------------------
 
     def save(self, path):
-        """Writes the whole state; the file appears whole or not at all."""
+        """Writes the whole state; the file appears whole or not at all. Nests have files of their own beside it,
+        PATH.NAME."""
+        self._follow()
+        for name, nest in self.nests.items():
+            nest._call(lib.tobi_world_save, f"{path}.{name}".encode())
         self._call(lib.tobi_world_save, str(path).encode())
 
     def load(self, path):
-        """Reads a state of a world of the same scene. A file that cannot be loaded changes nothing."""
+        """Reads a state of a world of the same scene. A file that cannot be loaded changes nothing but nests that
+        were loaded before it."""
+        for name, nest in self.nests.items():
+            nest._call(lib.tobi_world_load, f"{path}.{name}".encode())
         self._call(lib.tobi_world_load, str(path).encode())
 
     @property
@@ -350,3 +396,32 @@ class World:
         if self._handle is None:
             return "<tobiuo.World, closed>"
         return f"<tobiuo.World {text_of(lib.tobi_scene_name(self._scene))!r}, t = {self.time:g} s>"
+
+
+class Nest(World):
+    """The world of a nest: to be read as a World is. Its time goes on with the world that it is in."""
+
+    def __init__(self, outer, name, handle):
+        self._outer, self._name, self._nest = outer, name, handle
+        self._scene, self._raised = outer._scene, None
+
+    nests = _Named([], None)
+
+    @property
+    def _world(self):
+        return self._outer._world and self._nest
+
+    def start(self):
+        self._outer.start()
+        self._call(lib.tobi_world_start)
+
+    def _refuse(self, *arguments):
+        raise Error(f"nest {self._name!r} goes with its world: call that")
+
+    step = advance = set_gravity = save = load = _set_motion = _refuse
+
+    def close(self):
+        """Nothing: the world that it is in frees it."""
+
+    def __repr__(self):
+        return f"<tobiuo.Nest {self._name!r} of {self._outer!r}>"

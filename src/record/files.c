@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <fnmatch.h>
+#include <jansson.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,7 +35,7 @@ static const struct { const char *folder, *pattern; } ours[] = {
     { "checkpoints", "checkpoint_*.h5" }, { "checkpoints", "checkpoint_*.json" },
 };
 static const char *const folders[] = { "", "fluid", "bodies", "grid", "surface", "surfaces", "foam", "sample",
-                                      "tractions", "frames", "ply", "obj", "checkpoints" };
+                                      "tractions", "frames", "ply", "obj", "checkpoints", "nests" };
 
 char *tobi_record_path(const char *dir, const char *format, ...)
 {
@@ -178,6 +179,44 @@ tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err)
         free(folder);
     }
     return TOBI_OK;
+}
+
+/* What the user keeps in the folder of a nest stays. */
+static tobi_status clear_nest(const char *dir, const char *name, tobi_error *err)
+{
+    struct stat info;
+    int lock = -1;
+    char *path = tobi_record_path(dir, "nests/%s", name);
+    if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    tobi_status status = TOBI_OK;
+    if (lstat(path, &info) == 0 && S_ISDIR(info.st_mode)) {
+        status = tobi_record_open_dir(path, &lock, err);
+        if (status == TOBI_OK) status = tobi_record_clear(path, false, err);
+        if (lock >= 0) close(lock);
+        if (status == TOBI_OK) rmdir(path);
+    }
+    free(path);
+    return status;
+}
+
+/* Of a scene; a name that would lead elsewhere is none. */
+static bool is_nest_name(const char *name)
+{
+    return name && *name && strlen(name) < 200 &&
+           name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")] == '\0';
+}
+
+tobi_status tobi_record_clear_nests(const char *dir, const char *resolved, tobi_error *err)
+{
+    json_t *scene = resolved ? json_loads(resolved, 0, NULL) : NULL;
+    const json_t *list = json_object_get(scene, "nests");
+    tobi_status status = TOBI_OK;
+    for (size_t k = 0; k < json_array_size(list) && status == TOBI_OK; k++) {
+        const char *name = json_string_value(json_object_get(json_array_get(list, k), "name"));
+        if (is_nest_name(name)) status = clear_nest(dir, name, err);
+    }
+    json_decref(scene);
+    return status;
 }
 
 tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *err)

@@ -139,6 +139,7 @@ struct tobi_run {
     int skin_count;
     tobi_run **nest;                      /* runs of nests, the callers'             */
     int nest_count;
+    tobi_run *outer;                      /* of a nest: guarded by trouble_lock      */
     struct tobi_writer *writer;
     tobi_pvd *list;                       /* of each series, then of all             */
     int series;
@@ -160,7 +161,7 @@ struct tobi_run {
     bool goes_on;                         /* files that cannot be written are passed over */
     pthread_mutex_t trouble_lock;         /* of the next three                       */
     tobi_trouble trouble[TOBI_KINDS];
-    char *told[TOBI_KINDS];
+    char *told[TOBI_KINDS*(1 + TOBI_NEST_LIMIT)];    /* of this run and of its nests     */
     int told_count;                       /* atomic                                  */
     int64_t checkpoint_step;              /* of the last checkpoint, -1 = none       */
     int64_t checkpoint_outputs;           /* that it counts                          */
@@ -176,6 +177,8 @@ tobi_status tobi_record_open_dir(const char *dir, int *lock, tobi_error *err);
 tobi_status tobi_record_find_results(const char *dir, bool *found, tobi_error *err);
 /* Removes the files a run writes, with `only_parts` only unfinished ones. */
 tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err);
+/* Likewise of the nests that the scene in this text has; NULL, or no scene, is fine. */
+tobi_status tobi_record_clear_nests(const char *dir, const char *resolved, tobi_error *err);
 tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *err);
 /* Makes what was deleted of the run's directory and its folders again. */
 tobi_status tobi_record_keep_dir(tobi_run *run, tobi_error *err);

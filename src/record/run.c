@@ -119,6 +119,21 @@ static void tell_losses(tobi_run *run)
     if (at > run->losses) at[-2] = '\0';
 }
 
+static const char *name_of(const tobi_run *nest)
+{
+    const char *slash = strrchr(nest->dir, '/');
+    return slash ? slash + 1 : nest->dir;
+}
+
+/* Behind the losses of the run itself. */
+static void tell_nest_losses(tobi_run *run, const tobi_run *nest)
+{
+    const size_t used = strlen(run->losses);
+    if (*nest->losses)
+        snprintf(run->losses + used, sizeof run->losses - used, tr("%snest %s: %s"), used ? "; " : "",
+                 name_of(nest), nest->losses);
+}
+
 /* From a started world in a directory without results to output 0. */
 static tobi_status begin(tobi_run *run, tobi_error *err)
 {
@@ -139,6 +154,10 @@ static tobi_status create(tobi_run *run, int force, const char *resolved, tobi_e
                          " (choose another directory, or --force to replace them)", run->dir);
     /* A world that cannot start must not cost the old results. */
     TOBI_TRY(tobi_world_start(run->world, err));
+    read_scene(run, NULL);                          /* one that cannot be read names no nests */
+    TOBI_TRY(tobi_record_clear_nests(run->dir, run->resolved, err));
+    free(run->resolved);
+    run->resolved = NULL;
     TOBI_TRY(tobi_record_clear(run->dir, false, err));
     if (resolved && !(run->resolved = strdup(resolved)))
         return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
@@ -255,11 +274,24 @@ tobi_status tobi_run_add_nest(tobi_run *run, tobi_run *nest, tobi_error *err)
 {
     TOBI_NEED(run, "run");
     TOBI_NEED(nest, "the run of a nest");
+    if (run->nest_count == TOBI_NEST_LIMIT)
+        return tobi_fail(err, TOBI_INVALID, "a run has %d nests or fewer", TOBI_NEST_LIMIT);
     tobi_run **more = realloc(run->nest, (size_t)(run->nest_count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
     run->nest = more;
     more[run->nest_count++] = nest;
+    nest->outer = run;
+    tell_nest_losses(run, nest);
     return TOBI_OK;
+}
+
+/* Whose failure it is. A stop is none. */
+static tobi_status tell_nest(const tobi_run *nest, tobi_status status, tobi_error *err)
+{
+    if (status == TOBI_OK || status == TOBI_STOPPED || !err) return status;
+    const tobi_error why = *err;
+    tobi_fail(err, status, "nest '%s': %s", name_of(nest), why.text);
+    return tobi_at_key(err, status, "%s", why.key);
 }
 
 /* A nest to the time of the outer world. */
@@ -273,17 +305,15 @@ static tobi_status follow(tobi_run *nest, double t, double end, tobi_error *err)
     return TOBI_OK;
 }
 
-/* Nests are behind only after a stop between the step of the outer world and theirs: then its neighbours are
-   found again first. */
-static tobi_status catch_up(tobi_run *run, double end, int stepped, tobi_error *err)
+/* Nests are behind after a step of the outer world, or a stop of their own since. */
+static tobi_status catch_up(tobi_run *run, double end, int may_stop, tobi_error *err)
 {
     const double t = tobi_world_time(run->world);
     for (int k = 0; k < run->nest_count; k++) {
         tobi_world *w = run->nest[k]->world;
-        tobi_world_set_stop(w, run->world->sim.stop, run->world->sim.stop_user);
+        tobi_world_set_stop(w, may_stop ? run->world->sim.stop : NULL, run->world->sim.stop_user);
         if (tobi_world_time(w) >= t) continue;
-        if (!stepped) TOBI_TRY(tobi_world_refresh(run->world, err));
-        TOBI_TRY(follow(run->nest[k], t, end, err));
+        TOBI_TRY(tell_nest(run->nest[k], follow(run->nest[k], t, end, err), err));
         TOBI_TRY(tobi_world_feed(w, err));
     }
     return TOBI_OK;
@@ -296,7 +326,7 @@ tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_
     double next = tobi_record_time(run, run->outputs);
     double target = fmin(next, snap_end(run, end));
     TOBI_TRY(tobi_writer_check(run->writer, err));
-    TOBI_TRY(catch_up(run, end, 0, err));
+    TOBI_TRY(catch_up(run, end, 1, err));
     if (!reached(run, target)) {
         TOBI_TRY(step_towards(run, target, end, err));
         TOBI_TRY(catch_up(run, end, 1, err));
@@ -330,7 +360,9 @@ tobi_status tobi_run_output_end(tobi_run *run, tobi_error *err)
 {
     TOBI_NEED(run, "run");
     const double last = tobi_record_time(run, run->outputs - 1);
-    for (int k = 0; k < run->nest_count; k++) TOBI_TRY(tobi_run_output_end(run->nest[k], err));
+    for (int k = 0; k < run->nest_count; k++)
+        if (isfinite(tobi_world_info(run->nest[k]->world)->speed_max))      /* not after it diverged */
+            TOBI_TRY(tobi_run_output_end(run->nest[k], err));
     return tobi_record_reaches(last, tobi_world_time(run->world)) ? TOBI_OK : tobi_run_output(run, err);
 }
 
@@ -349,10 +381,12 @@ static tobi_status save(tobi_run *run, tobi_error *err)
     return tobi_state_save(run, err);
 }
 
-/* A checkpoint counts the outputs: they must be on the disk before it is. */
+/* A checkpoint counts the outputs: they must be on the disk before it is. Nests that were stopped come to the
+   time of the outer world, whose step they need in memory. */
 tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err)
 {
     TOBI_NEED(run, "run");
+    TOBI_TRY(catch_up(run, tobi_world_time(run->world), 0, err));
     for (int k = 0; k < run->nest_count; k++) TOBI_TRY(tobi_run_checkpoint(run->nest[k], err));
     TOBI_TRY(tobi_writer_wait(run->writer, err));
     if (run->world->sim.step == run->checkpoint_step && run->outputs == run->checkpoint_outputs)
@@ -376,19 +410,29 @@ tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err)
 {
     TOBI_NEED(run, "run");
     TOBI_NEED(outcome, "the outcome");
-    for (int k = 0; k < run->nest_count; k++) TOBI_TRY(tobi_run_finish(run->nest[k], outcome, err));
-    tobi_status status = tobi_writer_wait(run->writer, err);
+    tobi_status status = TOBI_OK;
+    for (int k = 0; k < run->nest_count; k++) {
+        const tobi_status ended = tobi_run_finish(run->nest[k], outcome, status == TOBI_OK ? err : NULL);
+        if (status == TOBI_OK) status = ended;
+    }
+    if (status == TOBI_OK) status = tobi_writer_wait(run->writer, err);
     if (status == TOBI_OK) status = end_files(run, err);
     if (status != TOBI_OK) err = NULL;
     tobi_status written = tobi_summary_write(run, status == TOBI_OK ? outcome : "failed", err);
     written = tobi_trouble_pass(run, TOBI_KIND_SUMMARY, run->outputs, written, err);
     tell_losses(run);
+    for (int k = 0; k < run->nest_count; k++) tell_nest_losses(run, run->nest[k]);
     return status != TOBI_OK ? status : written;
 }
 
 void tobi_run_free(tobi_run *run)
 {
     if (!run) return;
+    for (int k = 0; k < run->nest_count; k++) {
+        pthread_mutex_lock(&run->nest[k]->trouble_lock);
+        run->nest[k]->outer = NULL;
+        pthread_mutex_unlock(&run->nest[k]->trouble_lock);
+    }
     tobi_writer_free(run->writer);
     tobi_csv_close(run->history);
     tobi_csv_close(run->bodies);

@@ -10,6 +10,7 @@
 #include "base/plain.h"
 #include "base/file.h"
 #include "record/record.h"
+#include "world/world.h"
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>
@@ -217,6 +218,23 @@ static tobi_status load_one(tobi_run *run, int64_t step, tobi_error *err)
     return status;
 }
 
+/* A nest is saved before the world around it: after a power cut between them its last but one counts. */
+static bool is_ahead(const tobi_run *run)
+{
+    const tobi_world *outer = run->world->outer;
+    return outer && tobi_world_time(run->world) > tobi_world_time(outer);
+}
+
+/* One that is behind the world around it would see nothing of what came between. */
+static tobi_status check_gap(const tobi_run *run, tobi_error *err)
+{
+    const tobi_world *outer = run->world->outer;
+    const double time = tobi_world_time(run->world), then = tobi_world_time(outer);
+    if (!outer || time >= then) return TOBI_OK;
+    return tobi_fail(err, TOBI_DAMAGED, "the nest in %s has a checkpoint of %.9g s, the run around it one of "
+                     "%.9g s: remove that, for an earlier one", run->dir, time, then);
+}
+
 tobi_status tobi_state_load(tobi_run *run, bool *found, tobi_error *err)
 {
     int64_t steps[LIMIT];
@@ -230,14 +248,18 @@ tobi_status tobi_state_load(tobi_run *run, bool *found, tobi_error *err)
         if (k == 0 && status != TOBI_OK) first = why;
         if (status != TOBI_OK && status != TOBI_DAMAGED)
             return tobi_fail(err, status, "%s", why.text);
-        if (status != TOBI_OK) continue;
+        if (status != TOBI_OK || is_ahead(run)) continue;
+        TOBI_TRY(check_gap(run, err));
         run->checkpoint_step = steps[k];
         run->checkpoint_outputs = run->outputs;
         snprintf(run->note, sizeof run->note, tr("resumed at t = %.9g s, step %lld%s%.800s"),
                  tobi_world_time(run->world), (long long)steps[k],
-                 k ? tr("; a newer checkpoint is damaged: ") : "", first.text);
+                 *first.text ? tr("; a newer checkpoint is damaged: ") : "", first.text);
         return TOBI_OK;
     }
     if (count == 0) return TOBI_OK;
+    if (!*first.text)
+        return tobi_fail(err, TOBI_DAMAGED, "the nest in %s has no checkpoint that is as early as that of "
+                         "the run around it, of %.9g s", run->dir, tobi_world_time(run->world->outer));
     return tobi_fail(err, TOBI_DAMAGED, "no whole checkpoint is left: %.1900s", first.text);
 }

@@ -15,7 +15,13 @@ static const struct { const char *name; bool per_output; } kinds[TOBI_KINDS] = {
     [TOBI_KIND_SUMMARY] = { "summary.json", false },
 };
 
-/* Of a kind the first failure; the text lives as long as the run. */
+static void add_told(tobi_run *run, char *text)
+{
+    run->told[run->told_count] = text;
+    __atomic_store_n(&run->told_count, run->told_count + 1, __ATOMIC_RELEASE);
+}
+
+/* Of a kind the first failure; the text lives as long as the run. A nest tells by the run around it. */
 static void tell(tobi_run *run, tobi_record_kind kind, const char *reason)
 {
     static const char *const what[TOBI_KINDS] = {
@@ -28,8 +34,13 @@ static void tell(tobi_run *run, tobi_record_kind kind, const char *reason)
     run->trouble[kind].told = true;
     if (asprintf(&text, tr("%s%s; the run goes on"), reason, what[kind] ? tr(what[kind])
                  : tr(": left out")) < 0) return;
-    run->told[run->told_count] = text;
-    __atomic_store_n(&run->told_count, run->told_count + 1, __ATOMIC_RELEASE);
+    if (!run->outer) {
+        add_told(run, text);
+        return;
+    }
+    pthread_mutex_lock(&run->outer->trouble_lock);
+    add_told(run->outer, text);
+    pthread_mutex_unlock(&run->outer->trouble_lock);
 }
 
 tobi_status tobi_trouble_pass(tobi_run *run, tobi_record_kind kind, int64_t output, tobi_status status,
@@ -106,6 +117,7 @@ int64_t tobi_run_unwritten(tobi_run *run)
 {
     int64_t sum = 0;
     for (int k = 0; run && k < TOBI_KINDS; k++) sum += count(run, k);
+    for (int k = 0; run && k < run->nest_count; k++) sum += tobi_run_unwritten(run->nest[k]);
     return sum;
 }
 

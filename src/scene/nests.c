@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 typedef struct one_nest {
     tobi_scene *scene;             /* owned                                       */
@@ -19,6 +21,7 @@ typedef struct one_nest {
 
 struct tobi_nests {
     int count;
+    tobi_world *outer;             /* the caller's                                */
     one_nest at[TOBI_NEST_LIMIT];
 };
 
@@ -119,6 +122,7 @@ tobi_status tobi_nests_create(tobi_scene *scene, tobi_world *outer, tobi_nests *
     TOBI_NEED(outer, "the outer world");
     tobi_nests *n = calloc(1, sizeof *n);
     if (!n) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for nests");
+    n->outer = outer;
     tobi_status status = TOBI_OK;
     for (int k = 0; k < scene->tank.nest_count && status == TOBI_OK; k++) {
         n->count++;
@@ -144,6 +148,73 @@ double tobi_nests_spacing(const tobi_nests *n, int nest)
     return n && nest >= 0 && nest < n->count ? n->at[nest].scene->world.spacing : 0;
 }
 
+static tobi_status start_all(tobi_nests *n, tobi_error *err)
+{
+    if (tobi_nests_count(n)) TOBI_TRY(tobi_world_start(n->outer, err));
+    for (int k = 0; k < tobi_nests_count(n); k++) TOBI_TRY(tobi_world_start(n->at[k].world, err));
+    return TOBI_OK;
+}
+
+tobi_status tobi_nests_follow(tobi_nests *n, tobi_error *err)
+{
+    TOBI_TRY(start_all(n, err));
+    for (int k = 0; k < tobi_nests_count(n); k++) {
+        tobi_world *w = n->at[k].world;
+        if (!(tobi_world_time(w) < tobi_world_time(n->outer))) continue;
+        TOBI_TRY(tobi_world_advance(w, tobi_world_time(n->outer), NULL, err));
+        TOBI_TRY(tobi_world_feed(w, err));
+    }
+    return TOBI_OK;
+}
+
+/* dir/nests/NAME; the caller frees it. */
+static char *folder_of(const one_nest *o, const char *dir)
+{
+    const size_t room = strlen(dir) + strlen(o->name) + sizeof "/nests/";
+    char *path = malloc(room);
+    if (path) snprintf(path, room, "%s/nests/%s", dir, o->name);
+    return path;
+}
+
+static int has_file(const char *folder, const char *name)
+{
+    const size_t room = strlen(folder) + strlen(name) + 2;
+    char *path = malloc(room);
+    if (path) snprintf(path, room, "%s/%s", folder, name);
+    const int there = path && access(path, F_OK) == 0;
+    free(path);
+    return there;
+}
+
+/* The run of the outer world follows no link in its directory, and neither do those of its nests. */
+static tobi_status check_folder(const char *path, int how, tobi_error *err)
+{
+    struct stat info;
+    if (lstat(path, &info) != 0) return TOBI_OK;
+    if (S_ISLNK(info.st_mode))
+        return tobi_fail(err, TOBI_INVALID, "%s is a symbolic link: the results of a nest go into a plain "
+                         "folder only", path);
+    if (!S_ISDIR(info.st_mode))
+        return tobi_fail(err, TOBI_INVALID, "%s is no folder, as the results of a nest need", path);
+    if (how == TOBI_NESTS_CREATE && (has_file(path, "resolved.json") || has_file(path, "history.csv")))
+        return tobi_fail(err, TOBI_INVALID, "%s: holds the results of a run; nothing was changed"
+                         " (choose another directory, or --force to replace them)", path);
+    return TOBI_OK;
+}
+
+tobi_status tobi_nests_prepare(tobi_nests *n, const char *dir, int how, tobi_error *err)
+{
+    TOBI_NEED(dir, "the directory");
+    for (int k = 0; k < tobi_nests_count(n); k++) {
+        char *path = folder_of(&n->at[k], dir);
+        if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a nest");
+        const tobi_status status = check_folder(path, how, err);
+        free(path);
+        TOBI_TRY(status);
+    }
+    return how == TOBI_NESTS_RESUME ? TOBI_OK : start_all(n, err);
+}
+
 static tobi_status record(one_nest *o, tobi_run *run, const char *dir, int how, tobi_error *err)
 {
     const tobi_output_def *output = tobi_scene_output_def(o->scene);
@@ -159,15 +230,26 @@ static tobi_status record(one_nest *o, tobi_run *run, const char *dir, int how, 
     return tobi_run_add_nest(run, o->run, err);
 }
 
+tobi_status tobi_nests_estimate(tobi_nests *n, double end, tobi_run_size *size, tobi_error *err)
+{
+    TOBI_NEED(size, "where the size goes");
+    for (int k = 0; k < tobi_nests_count(n); k++) {
+        tobi_run_size one;
+        TOBI_TRY(tobi_run_estimate(n->at[k].world, tobi_scene_output_def(n->at[k].scene), end, &one, err));
+        size->files += one.files;
+        size->bytes += one.bytes;
+        size->memory += one.memory;
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_nests_record(tobi_nests *n, tobi_run *run, const char *dir, int how, tobi_error *err)
 {
     TOBI_NEED(run, "run");
     TOBI_NEED(dir, "the directory");
     for (int k = 0; k < tobi_nests_count(n); k++) {
-        const size_t room = strlen(dir) + strlen(n->at[k].name) + sizeof "/nests/";
-        char *path = malloc(room);
+        char *path = folder_of(&n->at[k], dir);
         if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a nest");
-        snprintf(path, room, "%s/nests/%s", dir, n->at[k].name);
         const tobi_status status = record(&n->at[k], run, path, how, err);
         free(path);
         TOBI_TRY(status);
@@ -175,10 +257,18 @@ tobi_status tobi_nests_record(tobi_nests *n, tobi_run *run, const char *dir, int
     return TOBI_OK;
 }
 
+void tobi_nests_close(tobi_nests *n)
+{
+    for (int k = 0; k < tobi_nests_count(n); k++) {
+        tobi_run_free(n->at[k].run);
+        n->at[k].run = NULL;
+    }
+}
+
 void tobi_nests_free(tobi_nests *n)
 {
-    for (int k = 0; n && k < n->count; k++) {
-        tobi_run_free(n->at[k].run);
+    tobi_nests_close(n);
+    for (int k = 0; k < tobi_nests_count(n); k++) {
         tobi_world_destroy(n->at[k].world);
         tobi_scene_free(n->at[k].scene);
         free(n->at[k].body);

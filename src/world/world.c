@@ -376,6 +376,13 @@ tobi_status tobi_world_step_towards(tobi_world *w, double t, double end, tobi_er
     return TOBI_OK;
 }
 
+tobi_status tobi_world_step_to(tobi_world *w, double t, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    if (!isfinite(t)) return tobi_fail(err, TOBI_INVALID, "the time to advance to is %g s, not finite", t);
+    return w->sim.time < t ? tobi_world_step_towards(w, t, t, err) : TOBI_OK;
+}
+
 tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);

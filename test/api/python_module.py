@@ -57,6 +57,64 @@ class Module(unittest.TestCase):
         tobiuo.run("pool.json", "theirs", until=0.05, force=True)
         self.assertEqual(tobiuo.Results("theirs").times[-1], 0.05)
 
+    def test_nests_go_along(self):
+        scene = with_bodies(FLOAT, method="isph", probes=[{"name": "low", "position": [0.2, 0.02]}], nests=[
+            {"name": "middle", "box": {"min": [0.1, 0], "max": [0.3, 0.3]}, "follow": "float", "feedback": True}])
+        pathlib.Path("nests.json").write_text(json.dumps(scene), encoding="utf-8")
+        subprocess.run([program, "run", "nests.json", "--out", "nests_mine", "--quiet"], check=True)
+        for again in (False, True):
+            done = tobiuo.run("nests.json", "nests_theirs", force=again)
+        paths = [path.relative_to("nests_mine") for path in sorted(pathlib.Path("nests_mine").rglob("*"))
+                 if path.suffix in (".csv", ".vtu") or path.name == "resolved.json"]
+        self.assertIn(pathlib.Path("nests/middle/history.csv"), paths)
+        for path in paths:
+            self.assertEqual(("nests_mine"/path).read_bytes(), ("nests_theirs"/path).read_bytes(), path)
+        nests = tobiuo.Results("nests_theirs").nests
+        self.assertEqual(list(nests), ["middle"])
+        self.assertEqual(list(nests["middle"].times), [0, 0.05, 0.1])
+        with self.assertRaisesRegex(tobiuo.Error, "nests_theirs"):
+            tobiuo.run("nests.json", "nests_theirs")
+        with tobiuo.World("nests.json") as world, tobiuo.World("nests.json") as other:
+            nest = world.nests["middle"]
+            self.assertEqual(list(world.nests), ["middle"])
+            world.advance(0.05)
+            self.assertEqual((world.time, nest.time), (0.05, 0.05))
+            self.assertGreater(nest.count(), world.count())
+            self.assertEqual(nest.read("velocity").shape, (nest.count(), 3))
+            self.assertAlmostEqual(nest.probes["low"]["pressure"], 1275, delta=100)
+            self.assertIn("middle", repr(nest))
+            for refused in (nest.step, lambda: nest.advance(1), lambda: nest.set_gravity([0, 0])):
+                with self.assertRaisesRegex(tobiuo.Error, "goes with its world"):
+                    refused()
+            world.save("state")
+            world.advance(0.1)
+            other.load("state")
+            self.assertEqual(other.nests["middle"].time, 0.05)
+            other.advance(0.1)
+            self.assertEqual((world.hash, nest.hash), (other.hash, other.nests["middle"].hash))
+            world.set_gravity([5, 0])
+            world.step()
+            self.assertEqual(nest.time, world.time)
+        with self.assertRaisesRegex(tobiuo.Error, "closed"):
+            nest.count()
+
+    def test_a_motion_in_python_moves_nests(self):
+        scene = with_bodies(FLAP, method="isph", nests=[{"name": "all", "box": {"min": [0, 0], "max": [0.4, 0.3]}}])
+        with tobiuo.World(scene) as world:
+            world.bodies["flap"].set_motion(lambda t, rest: rest + 0.5*t*np.array([0, 1, 0]))
+            world.advance(0.05)
+            places = [w.bodies["flap"].position for w in (world, world.nests["all"])]
+            np.testing.assert_allclose(*places, atol=1e-9)
+            self.assertAlmostEqual(places[0][1], 0.15, 6)
+            signal.setitimer(signal.ITIMER_REAL, 0.1)
+            signal.signal(signal.SIGALRM, signal.default_int_handler)
+            with self.assertRaises(KeyboardInterrupt):
+                world.advance(1000)
+            until = world.time + 0.01
+            world.bodies["flap"].set_motion(lambda t, rest: rest + 0.5*min(t, 0.1)*np.array([0, 1, 0]))
+            world.advance(until)
+            self.assertEqual(world.nests["all"].time, until)
+
     def test_texts_in_japanese(self):
         wrong = with_bodies(FLOAT) | {"spacing": 0, "cfll": 1}
         tobiuo.set_language("ja")
