@@ -51,6 +51,11 @@ tobi_fit tobi_fit_find(const tobi_world *w, double wish)
     tobi_fit best = { wish, 0 }, found;
     double least = INFINITY;
     if (w->system[0].solid_count > 0) return best;
+    if (w->outer) {       /* a nest divides the spacing that its outer world has taken */
+        const double outer = w->outer->sim.def.spacing;
+        best.spacing *= tobi_fit_find(w->outer, outer).spacing/outer;
+        return best;
+    }
     for (int k = 0; k <= 2*TRIALS; k++) {          /* the wish, and then farther and farther from it */
         const double way = MOST*(k + 1)/2/TRIALS*(k % 2 ? 1 : -1);
         if (!try_spacing(w, wish*(k ? 1 + way : 1), &found)) continue;
@@ -115,7 +120,7 @@ tobi_status tobi_fit_note(tobi_world *w, tobi_error *err)
     const double amount = find_amount(w, -1) - 1;
     tobi_fit fit = { wish, 0 };
     char text[TOBI_NOTE], neat[TOBI_NOTE];
-    if (w->system[0].solid_count > 0) return TOBI_OK;
+    if (w->system[0].solid_count > 0 || w->outer) return TOBI_OK;
     tell_neat(w, wish, neat);
     if (fabs(amount) > LITTLE) {
         snprintf(text, sizeof text, tr("%.5g m: whole layers do not fit, so that the particles hold %.1f %% "

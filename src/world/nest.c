@@ -13,6 +13,8 @@
 
 /* Support radii: how far the rim reaches. */
 static const double RIM = 2;
+/* Largest over least density: pressures that are given beside a light fluid are too much for the solve. */
+static const double DENSITY_RATIO = 2;
 /* Outer spacings: the shortest side of a box. */
 static const double LEAST = 4;
 
@@ -65,7 +67,7 @@ static tobi_status check_periods(const tobi_nest *n, const tobi_box *box, const 
 {
     char why[200];
     for (int a = 0; a < box->dimension; a++) {
-        const int low = isinf(n->lower[a]), high = isinf(n->upper[a]);
+        const int low = !isfinite(n->lower[a]), high = !isfinite(n->upper[a]);
         if (!box->periodic[a] || low == high) continue;
         snprintf(why, sizeof why, tr("the box meets one of the two periodic sides in %c; allowed is one that "
                  "meets both, or stays %.4g m away from them"), "xyz"[a], n->rim);
@@ -100,6 +102,10 @@ static tobi_status check_worlds(const tobi_world *w, const tobi_world *outer, co
     if (outer->system_count > 1)
         return tobi_fail(err, TOBI_UNSUPPORTED, "nest '%s': there are solids; nests are for liquids alone",
                          def->name);
+    if (tobi_system_density_ratio(&w->system[0]) > DENSITY_RATIO)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "nest '%s': the densities of the fluids are 1 : %.6g; a nest "
+                         "takes fluids up to 1 : %g", def->name, tobi_system_density_ratio(&w->system[0]),
+                         DENSITY_RATIO);
     if (!same)
         return tobi_fail(err, TOBI_INVALID, "nest '%s': domain, method and fluids must be those of the outer "
                          "world", def->name);

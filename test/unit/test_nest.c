@@ -85,6 +85,22 @@ static void rest_stays_rest(void **state)
             }
 }
 
+/* Where layers do not fit, both take another spacing, and the ratio stays. */
+static void spacings_give_way_together(void **state)
+{
+    (void)state;
+    tobi_world *outer = make_tank("isph", 0.03, 1, 0.4), *nest = make_tank("isph", 0.015, 1, 0.4);
+    const tobi_nest_def n = make_box(0.3, 0, 0.7, 0.6);
+    OK(tobi_world_nest(nest, outer, &n, &err));
+    OK(tobi_world_start(outer, &err));
+    OK(tobi_world_start(nest, &err));
+    const double taken = outer->system[0].smoothing.spacing;
+    assert_true(fabs(taken - 0.03) > 1e-5);
+    assert_true(fabs(2*nest->system[0].smoothing.spacing/taken - 1) < 1e-12);
+    tobi_world_destroy(nest);
+    tobi_world_destroy(outer);
+}
+
 /* m2 of liquid to the right of x, m. */
 static double measure_beyond(const tobi_world *w, double x)
 {
@@ -307,6 +323,7 @@ static void what_is_refused(void **state)
     tobi_world *outer = make_tank("isph", 0.02, 1, 0.4), *nest = make_tank("isph", 0.01, 1, 0.4);
     tobi_world *other = make_tank("isph", 0.02/3, 1, 0.4), *way = make_tank("wcsph", 0.02, 1, 0.4);
     tobi_world *periodic = make_fall("isph", 0.02), *in = make_fall("isph", 0.01);
+    tobi_world *airy = make_tank("isph", 0.02, 1, 0.4), *below = make_tank("isph", 0.01, 1, 0.4);
     tobi_nest_def n = make_box(0.3, 0, 0.7, 0.6);
     REFUSED(try_nest(nest, outer, make_box(-0.1, 0, 0.7, 0.6), &err), TOBI_INVALID,
             "the box reaches from -0.1 to 0.7 m in x, the domain from 0 to 1 m");
@@ -318,6 +335,17 @@ static void what_is_refused(void **state)
     REFUSED(try_nest(other, outer, n, &err), TOBI_INVALID, "2 times smaller than that of the outer world");
     REFUSED(try_nest(nest, way, n, &err), TOBI_UNSUPPORTED, "the method wcsph has no nests");
     REFUSED(try_nest(nest, periodic, n, &err), TOBI_INVALID, "domain, method and fluids must be those");
+    OK(try_nest(in, periodic, make_box(0, 0, 1, 0.4), &err));
+    tobi_fluid_def air = tobi_default_fluid_def();
+    tobi_fill_def high = tobi_default_fill_def();
+    air.name = "air";
+    air.density = 1.2;
+    high.box_min[1] = 0.4;
+    high.box_max[0] = 1;
+    high.box_max[1] = 0.6;
+    OK(tobi_world_add_fluid(airy, &air, &high, 1, &err));
+    OK(tobi_world_add_fluid(below, &air, &high, 1, &err));
+    REFUSED(try_nest(below, airy, n, &err), TOBI_UNSUPPORTED, "a nest takes fluids up to 1 : 2");
     n.follow = "whale";
     REFUSED(try_nest(nest, outer, n, &err), TOBI_INVALID, "no body 'whale' to follow");
     n.follow = NULL;
@@ -329,7 +357,7 @@ static void what_is_refused(void **state)
     tobi_world *free = make_tank("isph", 0.01, 1, 0.4);
     add_square(free, 1);
     REFUSED(try_nest(free, outer, n, &err), TOBI_UNSUPPORTED, "body 'square' moves by forces");
-    tobi_world *all[] = { free, nest, outer, other, way, periodic, in };
+    tobi_world *all[] = { free, nest, outer, other, way, periodic, in, airy, below };
     for (size_t k = 0; k < sizeof all/sizeof *all; k++) tobi_world_destroy(all[k]);
 }
 
@@ -360,7 +388,8 @@ static void openings_stay_outside(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rest_stays_rest), cmocka_unit_test(as_much_comes_in),
+        cmocka_unit_test(rest_stays_rest), cmocka_unit_test(spacings_give_way_together),
+        cmocka_unit_test(as_much_comes_in),
         cmocka_unit_test(liquid_that_gains_speed_is_not_pushed), cmocka_unit_test(a_box_goes_along),
         cmocka_unit_test(a_body_goes_as_outside), cmocka_unit_test(what_is_refused),
         cmocka_unit_test(openings_stay_outside), cmocka_unit_test(suction_opens_no_void)
