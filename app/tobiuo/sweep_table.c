@@ -56,11 +56,18 @@ static void free_tables(table *list, int count)
 /* The table has the largest and the least value of such a column. body: of its rows; NULL: of all. */
 typedef struct measure { int file; const char *body, *column; } measure;
 
-enum { FILES = 6, BODIES = FILES - 1, MEASURES = 600 };
+enum { FILES = 6, BODIES = FILES - 1, MEASURES = 600, ALL = FILES*(1 + TOBI_NEST_LIMIT) };
 static const char *const files[FILES] = { "probes.csv", "lines.csv", "joints.csv", "porous_zones.csv",
                                           "scalars.csv", "bodies.csv" };
 
-typedef struct measures { table *of[FILES]; measure one[MEASURES]; int count; } measures;
+/* FILES of the scene, then of each nest. */
+typedef struct measures {
+    table *of[ALL];
+    char nest[TOBI_NEST_LIMIT][64];
+    int nests;
+    measure one[MEASURES];
+    int count;
+} measures;
 
 /* What is read of a row: a column, or the sum of two. */
 typedef struct reading { int first, second; } reading;
@@ -113,30 +120,24 @@ static void add_measure(measures *m, int file, const char *body, const char *col
     if (m->count < MEASURES) m->one[m->count++] = (measure){ file, body, column };
 }
 
-/* Sensors, lines, joints, the places of bodies that move, and the forces on bodies. */
-static void find_measures(const sweep *s, measures *m)
+static void find_body_measures(const sweep *s, measures *m, int file)
 {
     static const char *const of_body[] = { "position_x", "position_y", "position_z",
                                            "force_x", "force_y", "force_z" };
-    const table *t;
-    for (int f = 0; f < FILES; f++) m->of[f] = read_all(s, files[f], 1);
-    for (int f = 0; f < BODIES; f++)
-        for (int k = 1; (t = first_table(m->of[f], s->runs)) && k < t->columns; k++)
-            add_measure(m, f, NULL, t->names[k]);
-    if (!(t = first_table(m->of[BODIES], s->runs))) return;
-    const int name = table_column(t, "name");
+    const table *t = first_table(m->of[file], s->runs);
+    const int name = t ? table_column(t, "name") : -1;
     for (size_t i = 0; name >= 0 && i < t->rows; i++) {
         const char *body = t->cells[i*(size_t)t->columns + (size_t)name];
         if (i > 0 && strcmp(body, t->cells[name]) == 0) return;      /* the second output begins */
         for (int a = 0; a < 6; a++) {
-            const measure one = { BODIES, body, of_body[a] };
-            if (extreme(t, &one, 1) > extreme(t, &one, -1)) add_measure(m, BODIES, body, of_body[a]);
+            const measure one = { file, body, of_body[a] };
+            if (extreme(t, &one, 1) > extreme(t, &one, -1)) add_measure(m, file, body, of_body[a]);
         }
     }
 }
 
-/* That of the first run that has begun. */
-static int find_dimension(const sweep *s)
+/* That of the first run that has begun; the caller frees it. */
+static json_t *read_scene(const sweep *s)
 {
     json_t *scene = NULL;
     for (int run = 0; run < s->runs && !scene; run++) {
@@ -145,6 +146,40 @@ static int find_dimension(const sweep *s)
         free(path);
         free(name);
     }
+    return scene;
+}
+
+static void find_nests(const sweep *s, measures *m)
+{
+    json_t *scene = read_scene(s);
+    const json_t *list = json_object_get(scene, "nests");
+    for (size_t k = 0; k < json_array_size(list) && m->nests < TOBI_NEST_LIMIT; k++) {
+        const char *name = json_string_value(json_object_get(json_array_get(list, k), "name"));
+        if (name) snprintf(m->nest[m->nests++], sizeof m->nest[0], "%s", name);
+    }
+    json_decref(scene);
+}
+
+/* Sensors, lines, joints, the places of bodies that move, and the forces on bodies; then those of nests. */
+static void find_measures(const sweep *s, measures *m)
+{
+    const table *t;
+    find_nests(s, m);
+    for (int f = 0; f < FILES*(1 + m->nests); f++) {
+        char path[128];
+        if (f < FILES) snprintf(path, sizeof path, "%s", files[f]);
+        else snprintf(path, sizeof path, "nests/%s/%s", m->nest[f/FILES - 1], files[f%FILES]);
+        m->of[f] = read_all(s, path, 1);
+        if (f%FILES == BODIES) find_body_measures(s, m, f);
+        else
+            for (int k = 1; (t = first_table(m->of[f], s->runs)) && k < t->columns; k++)
+                add_measure(m, f, NULL, t->names[k]);
+    }
+}
+
+static int find_dimension(const sweep *s)
+{
+    json_t *scene = read_scene(s);
     const int dimension = json_integer_value(json_object_get(scene, "dimension")) == 2 ? 2 : 3;
     json_decref(scene);
     return dimension;
@@ -163,8 +198,10 @@ static void add_head(const sweep *s, grid *g, const measures *m)
     for (int sign = 1; sign >= -1; sign -= 2)
         for (const measure *one = m->one; one < m->one + m->count; one++) {
             const char *extremum = sign > 0 ? "max" : "min";
-            if (!one->body) add_cell(g, "%s %s", extremum, one->column);
-            else add_cell(g, "%s %s_%s [%s]", extremum, one->body, one->column,
+            const char *nest = one->file < FILES ? "" : m->nest[one->file/FILES - 1];
+            const char *slash = *nest ? "/" : "";
+            if (!one->body) add_cell(g, "%s %s%s%s", extremum, nest, slash, one->column);
+            else add_cell(g, "%s %s%s%s_%s [%s]", extremum, nest, slash, one->body, one->column,
                           plot_unit(one->column, dimension));
         }
 }
@@ -262,7 +299,7 @@ int sweep_write_table(const sweep *s)
     if (!code) printf(tr("%s/sweep.csv and sweep.txt have all columns\n"), s->dir);
     for (int k = 0; k < g.columns*g.rows; k++) free(g.cell[k]);
     free(g.cell);
-    for (int f = 0; f < FILES; f++) free_tables(m.of[f], s->runs);
+    for (int f = 0; f < FILES*(1 + m.nests); f++) free_tables(m.of[f], s->runs);
     return code;
 }
 
@@ -303,19 +340,21 @@ static int add_curve(const table *t, const char *column, const char *label, int 
     return c.count > 0;
 }
 
-/* The column of a run from the first of its tables that has it. */
+/* The column of a run, or NEST/COLUMN, from the first of its tables that has it. */
 static int add_run(const sweep *s, int run, const char *column, panel *a, picture *p, char **name)
 {
     enum { TABLES = 7 };
     static const char *const from[TABLES] = { "probes.csv", "lines.csv", "joints.csv", "porous_zones.csv",
                                               "scalars.csv", "history.csv", "bodies.csv" };
+    const char *slash = strchr(column, '/');
+    const int length = slash ? (int)(slash - column) : 0;
     int found = 0;
     for (int f = 0; f < TABLES && !found; f++) {
         table t = { 0 };
-        char *path = sweep_path(s, "%s/%s", *name, from[f]);
+        char *path = sweep_path(s, "%s%s%.*s/%s", *name, slash ? "/nests/" : "", length, column, from[f]);
         if (access(path, F_OK) != 0 || table_read(&t, path) != 0) t = (table){ 0 };
         table_strip_units(&t);
-        found = add_curve(&t, column, *name, run, a, p);
+        found = add_curve(&t, slash ? slash + 1 : column, *name, run, a, p);
         table_free(&t);
         free(path);
     }

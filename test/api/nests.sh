@@ -153,6 +153,8 @@ done
 expect 1 "there is no whole wave" waves whole_isph/nests/buoy
 expect 1 "has no sensors of the kind level" waves whole_isph/nests/end
 expect 0 "" sweep tank.json --set nests.end.refinement=2,3 --until 0.02 --out s
-check "a sweep over the refinement" grep -q "^run,refinement,outcome" s/sweep.csv
+check "a sweep has the sensors of nests" grep -q "^run,refinement,outcome.*,max end/far_pressure \[Pa\]" s/sweep.csv
+expect 0 "" sweep tank.json --set nests.end.refinement=2,3 --until 0.02 --out s --plot end/far_pressure
+check "and draws one" grep -q "shows end/far_pressure of all runs" out.txt
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

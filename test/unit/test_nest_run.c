@@ -227,6 +227,53 @@ static void nests_without_a_run(void **state)
     drop(&a);
 }
 
+/* The scene with one piece of its text replaced. */
+static tobi_status make_other(const char *old, const char *other, all *a, tobi_error *err)
+{
+    char scene[2000];
+    const char *place = strstr(text, old);
+    assert_non_null(place);
+    snprintf(scene, sizeof scene, "%.*s%s%s", (int)(place - text), text, other, place + strlen(old));
+    *a = (all){ 0 };
+    tobi_status status = tobi_scene_parse("scene.json", scene, strlen(scene), NULL, &a->scene, NULL, err);
+    if (status == TOBI_OK) status = tobi_scene_build(a->scene, &a->world, err);
+    return status == TOBI_OK ? tobi_nests_create(a->scene, a->world, &a->nests, err) : status;
+}
+
+static void what_a_scene_may_not_have(void **state)
+{
+    char more[600];
+    all a;
+    (void)state;
+    REFUSED(make_other("left", "to the left", &a, &err), TOBI_INVALID,
+            "\"to the left\" names a folder: allowed are letters, digits, _ and -");
+    drop(&a);
+    snprintf(more, sizeof more, "\"solids\": [{\"name\": \"jelly\", \"fill\": [{\"box\": {\"min\": "
+             "[0.1, 0.1], \"max\": [0.2, 0.16]}}]}], \"output\"");
+    REFUSED(make_other("\"output\"", more, &a, &err), TOBI_UNSUPPORTED, "nests are for liquids alone");
+    drop(&a);
+    write_file(at("swim.lua"), "function deform(x, y, z, t) return x, y + 0.001*math.sin(t)*x, z end");
+    snprintf(more, sizeof more, "\"bodies\": [{\"name\": \"eel\", \"dynamics\": \"free\", \"box\": "
+             "{\"min\": [0.1, 0.04], \"max\": [0.2, 0.08]}, \"motion\": {\"script\": \"%s\"}}], "
+             "\"output\"", at("swim.lua"));
+    REFUSED(make_other("\"output\"", more, &a, &err), TOBI_UNSUPPORTED, "body 'eel' swims");
+    drop(&a);
+}
+
+static void states_are_of_their_world(void **state)
+{
+    (void)state;
+    all a = make();
+    tobi_world *nest = tobi_nests_world(a.nests, 0, NULL);
+    OK(tobi_nests_follow(a.nests, &err));
+    OK(tobi_world_save(a.world, at("outer.h5"), &err));
+    OK(tobi_world_save(nest, at("nest.h5"), &err));
+    REFUSED(tobi_world_load(a.world, at("nest.h5"), &err), TOBI_INVALID, "is of a nest, which goes on");
+    REFUSED(tobi_world_load(nest, at("outer.h5"), &err), TOBI_INVALID, "is of a world that is no nest");
+    OK(tobi_world_load(nest, at("nest.h5"), &err));
+    drop(&a);
+}
+
 static int enter(void **state)
 {
     (void)state;
@@ -246,7 +293,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(checkpoints_belong_together), cmocka_unit_test(what_is_refused_costs_nothing),
         cmocka_unit_test(a_failure_has_the_name_of_the_nest), cmocka_unit_test(trouble_of_nests_is_told),
-        cmocka_unit_test(nests_without_a_run)
+        cmocka_unit_test(nests_without_a_run), cmocka_unit_test(what_a_scene_may_not_have),
+        cmocka_unit_test(states_are_of_their_world)
     };
     return cmocka_run_group_tests(tests, enter, leave);
 }
