@@ -173,16 +173,23 @@ tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, con
 /* Entries that there is room for. */
 static int64_t list_room(const tobi_cells *c) { return c->list_bytes/(int64_t)tobi_list_size(c->list_far); }
 
-/* No more than what is needed and a little, as the list is by far the longest array: what a search needs
-   changes slowly, and nothing is copied. */
+/* A list that has grown so often is that of a world in which rows come and go. */
+enum { GROWTHS = 4 };
+
+/* What is left free: one part of so many. Lists are by far the longest arrays, and what a search needs
+   changes slowly; but where rows come and go, they move on to other blocks. */
+static int64_t find_slack(const tobi_cells *c) { return c->growths < GROWTHS ? 64 : 20; }
+
+/* Nothing is copied. */
 static tobi_status grow_list(tobi_cells *c, int64_t entries, tobi_error *err)
 {
-    const int64_t more = entries + entries/64, size = (int64_t)tobi_list_size(c->list_far);
+    const int64_t more = entries + entries/find_slack(c), size = (int64_t)tobi_list_size(c->list_far);
     void *list = tobi_array_make(more, (size_t)size);
     if (!list) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld neighbours", (long long)more);
     tobi_array_free(c->list);
     c->list = list;
     c->list_bytes = more*size;
+    c->growths++;
     return TOBI_OK;
 }
 
@@ -209,7 +216,8 @@ static int64_t place_regions(tobi_cells *c, int64_t blocks)
     int64_t at = 0;
     for (int64_t b = 0; b < blocks; b++) {
         tobi_list_region *r = &c->region[b];
-        *r = (tobi_list_region){ .begin = at, .room = r->groups + r->groups/64 + 1, .groups = r->groups };
+        const int64_t room = r->groups + r->groups/find_slack(c) + 1;
+        *r = (tobi_list_region){ .begin = at, .room = room, .groups = r->groups };
         at += r->room;
     }
     return at;

@@ -37,6 +37,7 @@ typedef struct tobi_cells {
     int64_t  list_bytes;
     int64_t  list_used;     /* up to the last entry, gaps between regions included    */
     struct tobi_list_region *region;    /* of each block of particles, see core/cells.k.h */
+    int64_t  growths;       /* of the list                                            */
     int64_t  regions;       /* of which the last search says how much they need       */
     /* by particle */
     tobi_record *record;    /* fixed-point position; w: a number that neighbours read  */
