@@ -178,7 +178,7 @@ enum { GROWTHS = 4 };
 
 /* What is left free: one part of so many. Lists are by far the longest arrays, and what a search needs
    changes slowly; but where rows come and go, they move on to other blocks. */
-static int64_t find_slack(const tobi_cells *c) { return c->growths < GROWTHS ? 64 : 20; }
+static uint32_t find_slack(const tobi_cells *c) { return c->growths < GROWTHS ? 64 : 20; }
 
 /* Nothing is copied. */
 static tobi_status grow_list(tobi_cells *c, int64_t entries, tobi_error *err)
@@ -216,7 +216,7 @@ static int64_t place_regions(tobi_cells *c, int64_t blocks)
     int64_t at = 0;
     for (int64_t b = 0; b < blocks; b++) {
         tobi_list_region *r = &c->region[b];
-        const int64_t room = r->groups + r->groups/find_slack(c) + 1;
+        const uint32_t room = r->groups + r->groups/find_slack(c) + 1;
         *r = (tobi_list_region){ .begin = at, .room = room, .groups = r->groups };
         at += r->room;
     }
