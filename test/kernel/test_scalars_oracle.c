@@ -57,7 +57,7 @@ static void open_scene(scene *s, const rig_case *c)
         f->accel[i] = (tobi_float4){ (float)(600*rig_random()), (float)(600*rig_random()),
                                      c->dimension == 3 ? (float)(600*rig_random()) : 0, 0 };
     }
-    s->in = calloc((size_t)s->g.p.count, sizeof(row));
+    s->in = calloc(s->g.p.count > 0 ? (size_t)s->g.p.count : 1, sizeof(row));
     rig_get(&s->g, s->in);
 }
 
