@@ -139,7 +139,7 @@ tobi_status isph_bodies_find_mirrors(isph_solver *m, tobi_system *s, tobi_error 
 {
     const tobi_boundary_links *n = &sph_of(s)->links;
     isph_view *v = &m->view;
-    memset(v->body_share, 0, (size_t)s->particles.count*sizeof *v->body_share);
+    if (s->particles.count > 0) memset(v->body_share, 0, (size_t)s->particles.count*sizeof *v->body_share);
     v->last_link = s->sim->body_count ? sph_fields_of(&s->particles)->last_link : NULL;
     if (!v->last_link) return TOBI_OK;
     m->corners = 0;
