@@ -91,7 +91,7 @@ def plate(feedback):
     case.state(f"{name}: force in the scene over the fine run", forces[0]/forces[2])
 
 
-def cylinder():
+def cylinder(feedback):
     """Drag of a cylinder at Re 100 in a liquid that flows at first like a block, in a full channel: no free surface."""
     speed, width, density = 0.1, 0.1, 1000
     scene = {"domain": {"min": [0, 0], "max": [2, 1.2], "walls": {"x": "periodic"}}, "gravity": [0, 0], "end_time": 8,
@@ -100,14 +100,16 @@ def cylinder():
              "bodies": [{"name": "cylinder", "sphere": {"centre": [0.7, 0.6], "radius": width/2}, "friction": "no-slip"}],
              "output": {"interval": 0.25}}
     drags = []
-    for folder in run_three("cylinder", scene, {"box": {"min": [0.55, 0.42], "max": [1, 0.78]}}, width/8):
+    nest = {"box": {"min": [0.55, 0.42], "max": [1, 0.78]}, "feedback": feedback}
+    for folder in run_three(f"cylinder_{feedback}".lower(), scene, nest, width/8):
         table = read_table(folder/"bodies.csv")
         rows = [p + v for t, p, v in zip(table["time"], table["mean_pressure_force_x"], table["mean_viscous_force_x"])
                 if t > 2]
         drags.append(sum(rows)/len(rows)/(0.5*density*speed**2*width))
-    case.figure("cylinder: drag in the nest over the fine run", drags[1]/drags[2], "within 0.05",
+    name = f"cylinder, {'with' if feedback else 'no'} feedback"
+    case.figure(f"{name}: drag in the nest over the fine run", drags[1]/drags[2], "within 0.05",
                 abs(drags[1]/drags[2] - 1) <= 0.05)
-    case.state("cylinder: drag in the scene over the fine run", drags[0]/drags[2])
+    case.state(f"{name}: drag in the scene over the fine run", drags[0]/drags[2])
 
 
 def rest():
@@ -131,9 +133,9 @@ for size in case.pick((25,), (25, 50)):
 if METHOD == "isph":
     for size in case.pick((), (10, 20)):
         waves(size)
-    if not case.smoke:
-        cylinder()
     for fed in case.pick((False,), (False, True)):
         plate(fed)
+    for fed in case.pick((), (False, True)):
+        cylinder(fed)
 case.plot("Force on the lowest 0.1 m of the wall", "t, s", "F, kN/m", curves)
 case.finish()
