@@ -74,8 +74,9 @@ static void lift(tobi_system *s)
 
 void sph_nest_mark(tobi_system *s)
 {
-    if (s->sim->nest.outer) lift(s);
-    if (s->sim->nest.outer) tobi_loop(s->sim->exec.threads, s->particles.count, 512, mark_range, s);
+    if (!s->sim->nest.outer) return;
+    lift(s);
+    tobi_loop(s->sim->exec.threads, s->particles.count, 512, mark_range, s);
 }
 
 static void hold_range(const void *view, int64_t begin, int64_t end)

@@ -67,22 +67,26 @@ static int is_gone(const tobi_system *s, const void *none, int64_t i)
     return out > n->rim + 0.5*wide || (out > 0 && !is_near(n->outer, x, DRY*wide));
 }
 
-/* Adds part of outer row j at a place, if no other new one, from row `first` on, is near. */
-static tobi_status add(tobi_system *s, int64_t first, const double x[3], double room, int64_t j,
-                       tobi_error *err)
+/* Whether one of the rows from `first` on is nearer than `reach`, m. */
+static int is_taken(const tobi_system *s, int64_t first, const double x[3], double reach)
 {
-    int64_t row;
-    tobi_particles *p = &s->particles;
-    const tobi_particles *outer = &s->sim->nest.outer->particles;
-    const double least = room*s->smoothing.spacing;
+    const tobi_particles *p = &s->particles;
     for (int64_t n = first; n < p->count; n++) {
         const double other[3] = { p->position[n].x, p->position[n].y, p->position[n].z };
-        if (vec3_distance2(other, x) < least*least) return TOBI_OK;
+        if (vec3_distance2(other, x) < reach*reach) return 1;
     }
+    return 0;
+}
+
+/* Adds a part of outer row j. */
+static tobi_status add(tobi_system *s, const double x[3], int64_t j, tobi_error *err)
+{
+    int64_t row;
+    const tobi_particles *outer = &s->sim->nest.outer->particles;
     TOBI_TRY(tobi_system_insert(s, 1, &row, err));
-    p->position[row] = (tobi_double3){ x[0], x[1], x[2] };
-    p->velocity[row] = outer->velocity[j];
-    p->fluid[row] = outer->fluid[j];
+    s->particles.position[row] = (tobi_double3){ x[0], x[1], x[2] };
+    s->particles.velocity[row] = outer->velocity[j];
+    s->particles.fluid[row] = outer->fluid[j];
     tobi_scalars_repeat(s, row, s->sim->nest.outer, j);
     s->info.particles_in++;
     return TOBI_OK;
@@ -132,6 +136,7 @@ static int wants_parts(const tobi_system *outer, const void *view, int64_t j)
     return 0;
 }
 
+/* Holes are few; of what comes in two parts may be near each other, as the outer particles are. */
 static tobi_status add_parts(tobi_world *w, tobi_error *err)
 {
     tobi_system *s = &w->system[0];
@@ -141,10 +146,13 @@ static tobi_status add_parts(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_rows_choose(w, outer, wants_parts, w, &count, err));
     for (int64_t c = 0; c < count; c++) {
         const int64_t j = w->chosen[c];
+        const double room = room_of(w, j), reach = room*s->smoothing.spacing;
         double x[3];
-        for (int k = 0; k < count_parts(s); k++)
-            if (find_part(s, j, k, room_of(w, j), x))
-                TOBI_TRY(add(s, first, x, room_of(w, j), j, err));
+        for (int k = 0; k < count_parts(s); k++) {
+            if (!find_part(s, j, k, room, x)) continue;
+            if (room == ROOM_OF_HOLE && is_taken(s, first, x, reach)) continue;
+            TOBI_TRY(add(s, x, j, err));
+        }
     }
     return TOBI_OK;
 }
