@@ -50,6 +50,9 @@ typedef struct tobi_run_size {
 TOBI_API tobi_status tobi_run_estimate(tobi_world *world, const tobi_output_def *output, double end,
                                        tobi_run_size *size, tobi_error *err);
 
+/* TOBI_INVALID if dir holds results, which tobi_run_create does not replace without force. */
+TOBI_API tobi_status tobi_run_check_directory(const char *dir, tobi_error *err);
+
 /* Starts recording into dir, which is made with its parents if missing. Starts the world (see
    tobi_world_start) and writes the output at time 0. The world stays the caller's and must outlive
    the run; output is copied. resolved_json may be NULL (then no resolved.json and no resume by the

@@ -145,13 +145,19 @@ static tobi_status begin(tobi_run *run, tobi_error *err)
     return tobi_writer_wait(run->writer, err);
 }
 
+tobi_status tobi_run_check_directory(const char *dir, tobi_error *err)
+{
+    bool found;
+    TOBI_NEED(dir, "the directory");
+    TOBI_TRY(tobi_record_find_results(dir, &found, err));
+    if (!found) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "%s: holds the results of a run; nothing was changed"
+                     " (choose another directory, or --force to replace them)", dir);
+}
+
 static tobi_status create(tobi_run *run, int force, const char *resolved, tobi_error *err)
 {
-    bool found = false;
-    if (!force) TOBI_TRY(tobi_record_find_results(run->dir, &found, err));
-    if (found)
-        return tobi_fail(err, TOBI_INVALID, "%s: holds the results of a run; nothing was changed"
-                         " (choose another directory, or --force to replace them)", run->dir);
+    if (!force) TOBI_TRY(tobi_run_check_directory(run->dir, err));
     /* A world that cannot start must not cost the old results. */
     TOBI_TRY(tobi_world_start(run->world, err));
     read_scene(run, NULL);                          /* one that cannot be read names no nests */
@@ -405,19 +411,27 @@ static tobi_status end_files(tobi_run *run, tobi_error *err)
     return tobi_trouble_pass(run, TOBI_KIND_TABLES, last, tobi_tables_flush(run, err), err);
 }
 
-/* The summary is written after a failure too, but then it says so. */
-tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err)
+static tobi_status finish_nests(tobi_run *run, const char *outcome, tobi_error *err)
 {
-    TOBI_NEED(run, "run");
-    TOBI_NEED(outcome, "the outcome");
     tobi_status status = TOBI_OK;
     for (int k = 0; k < run->nest_count; k++) {
         const tobi_status ended = tobi_run_finish(run->nest[k], outcome, status == TOBI_OK ? err : NULL);
         if (status == TOBI_OK) status = ended;
     }
-    if (status == TOBI_OK) status = tobi_writer_wait(run->writer, err);
+    return status;
+}
+
+/* The summary is written after a failure too, but then it says so. */
+tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err)
+{
+    TOBI_NEED(run, "run");
+    TOBI_NEED(outcome, "the outcome");
+    const tobi_status nests = finish_nests(run, outcome, err);
+    if (nests != TOBI_OK) err = NULL;      /* the first failure is told, and the rest is ended all the same */
+    tobi_status status = tobi_writer_wait(run->writer, err);
     if (status == TOBI_OK) status = end_files(run, err);
     if (status != TOBI_OK) err = NULL;
+    if (nests != TOBI_OK) status = nests;
     tobi_status written = tobi_summary_write(run, status == TOBI_OK ? outcome : "failed", err);
     written = tobi_trouble_pass(run, TOBI_KIND_SUMMARY, run->outputs, written, err);
     tell_losses(run);

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 typedef struct one_nest {
     tobi_scene *scene;             /* owned                                       */
@@ -82,6 +81,8 @@ static tobi_status lead_bodies(one_nest *o, const tobi_world *outer, tobi_error 
         led.motion_user = &o->body[k];
         led.motion_rigid = 1;
         *b = led;
+        tobi_script_free(s->bodies[k].control);
+        s->bodies[k].control = NULL;
     }
     s->line_count = s->joint_count = 0;
     return TOBI_OK;
@@ -176,16 +177,6 @@ static char *folder_of(const one_nest *o, const char *dir)
     return path;
 }
 
-static int has_file(const char *folder, const char *name)
-{
-    const size_t room = strlen(folder) + strlen(name) + 2;
-    char *path = malloc(room);
-    if (path) snprintf(path, room, "%s/%s", folder, name);
-    const int there = path && access(path, F_OK) == 0;
-    free(path);
-    return there;
-}
-
 /* The run of the outer world follows no link in its directory, and neither do those of its nests. */
 static tobi_status check_folder(const char *path, int how, tobi_error *err)
 {
@@ -196,10 +187,7 @@ static tobi_status check_folder(const char *path, int how, tobi_error *err)
                          "folder only", path);
     if (!S_ISDIR(info.st_mode))
         return tobi_fail(err, TOBI_INVALID, "%s is no folder, as the results of a nest need", path);
-    if (how == TOBI_NESTS_CREATE && (has_file(path, "resolved.json") || has_file(path, "history.csv")))
-        return tobi_fail(err, TOBI_INVALID, "%s: holds the results of a run; nothing was changed"
-                         " (choose another directory, or --force to replace them)", path);
-    return TOBI_OK;
+    return how == TOBI_NESTS_CREATE ? tobi_run_check_directory(path, err) : TOBI_OK;
 }
 
 tobi_status tobi_nests_prepare(tobi_nests *n, const char *dir, int how, tobi_error *err)

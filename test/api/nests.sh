@@ -150,6 +150,17 @@ for results in whole_isph whole_isph/nests/end; do
     expect 0 "" foam $results
     expect 1 "is a run in 2-D, which has no surface" surface $results
 done
+# In a nest a body with a program goes as in the scene, and its scene is one that can be read.
+echo 'function control(t, body) return { force = { 5, 0, 0 } } end' > push.lua
+expect 0 "" run tank.json --out pushed --quiet --until 0.1 --set bodies.buoy.dynamics=controlled \
+    --set 'bodies.buoy.control={"script": "push.lua"}'
+expect 0 "" picture pushed/nests/buoy --out pushed.png
+check "as far as in the scene" $python -c "
+import csv
+ends = [[row for row in csv.DictReader(open(f'pushed/{folder}bodies.csv')) if row['name'] == 'buoy'][-1]
+        for folder in ('', 'nests/buoy/')]
+moved, followed = (float(row['position_x']) for row in ends)
+raise SystemExit(not (moved > 0.5501 and abs(moved - followed) < 1e-9))"
 expect 1 "there is no whole wave" waves whole_isph/nests/buoy
 expect 1 "has no sensors of the kind level" waves whole_isph/nests/end
 expect 0 "" sweep tank.json --set nests.end.refinement=2,3 --until 0.02 --out s

@@ -10,8 +10,11 @@
 static const char *const methods[] = { "isph", "dfsph" };
 enum { METHODS = sizeof methods/sizeof *methods };
 
-/* A 2-D tank 1 m long and 0.6 m high with water from 0 to width and height, m. */
-static tobi_world *make_tank(const char *method, double spacing, double width, double height)
+/* A 2-D world of `wide` by `high`, m, with water in its lower left, up to `width` and `height`, that has a
+   speed along x. Gravity acts along x in a world that is periodic there, else along y. */
+typedef struct pool { double wide, high, width, height, gravity, speed, viscosity; int periodic; } pool;
+
+static tobi_world *make_pool(const pool *p, const char *method, double spacing)
 {
     tobi_world_def d = tobi_default_world_def();
     tobi_fluid_def fluid = tobi_default_fluid_def();
@@ -21,18 +24,25 @@ static tobi_world *make_tank(const char *method, double spacing, double width, d
     d.dimension = 2;
     d.spacing = spacing;
     d.threads = 1;
-    d.gravity[1] = -9.81;
-    d.gravity[2] = 0;
-    d.domain_max[0] = 1;
-    d.domain_max[1] = 0.6;
-    d.domain_max[2] = 0;
-    fill.box_max[0] = width;
-    fill.box_max[1] = height;
-    fill.box_max[2] = 0;
-    fluid.viscosity = 1e-3;
+    if (p->periodic) d.wall_min[0] = d.wall_max[0] = TOBI_WALL_PERIODIC;
+    d.gravity[0] = p->periodic ? p->gravity : 0;
+    d.gravity[1] = p->periodic ? 0 : -p->gravity;
+    d.gravity[2] = d.domain_max[2] = fill.box_max[2] = 0;
+    d.domain_max[0] = p->wide;
+    d.domain_max[1] = p->high;
+    fill.box_max[0] = p->width;
+    fill.box_max[1] = p->height;
+    fill.velocity[0] = p->speed;
+    fluid.viscosity = p->viscosity;
     OK(tobi_world_create(&d, NULL, &w, &err));
     OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
     return w;
+}
+
+static tobi_world *make_tank(const char *method, double spacing, double width, double height)
+{
+    const pool p = { 1, 0.6, width, height, 9.81, 0, 1e-3, 0 };
+    return make_pool(&p, method, spacing);
 }
 
 static tobi_nest_def make_box(double left, double bottom, double right, double top)
@@ -44,6 +54,15 @@ static tobi_nest_def make_box(double left, double bottom, double right, double t
     n.box_max[0] = right;
     n.box_max[1] = top;
     return n;
+}
+
+static void add_probe(tobi_world *w, double x, double y)
+{
+    tobi_probe_def probe = tobi_default_probe_def();
+    probe.name = "probe";
+    probe.position[0] = x;
+    probe.position[1] = y;
+    OK(tobi_world_add_probe(w, &probe, &err));
 }
 
 /* Both to time t, s. */
@@ -67,13 +86,9 @@ static void rest_stays_rest(void **state)
                 tobi_world *outer = make_tank(methods[m], 0.02, 1, 0.4);
                 tobi_world *nest = make_tank(methods[m], 0.01, 1, 0.4);
                 tobi_nest_def n = below ? make_box(0.3, 0.14, 0.7, 0.26) : make_box(0.3, 0, 0.7, 0.6);
-                tobi_probe_def probe = tobi_default_probe_def();
                 tobi_probe_info info;
                 n.feedback = feedback;
-                probe.name = "middle";
-                probe.position[0] = 0.5;
-                probe.position[1] = 0.2;
-                OK(tobi_world_add_probe(nest, &probe, &err));
+                add_probe(nest, 0.5, 0.2);
                 OK(tobi_world_nest(nest, outer, &n, &err));
                 advance(outer, nest, 0.3);
                 OK(tobi_world_probe(nest, 0, &info, &err));
@@ -136,24 +151,8 @@ static void as_much_comes_in(void **state)
    time, or one would push the other. */
 static tobi_world *make_fall(const char *method, double spacing)
 {
-    tobi_world_def d = tobi_default_world_def();
-    tobi_fluid_def fluid = tobi_default_fluid_def();
-    tobi_fill_def fill = tobi_default_fill_def();
-    tobi_world *w = NULL;
-    d.method = method;
-    d.dimension = 2;
-    d.spacing = spacing;
-    d.threads = 1;
-    d.gravity[0] = 5;
-    d.gravity[1] = d.gravity[2] = 0;
-    d.wall_min[0] = d.wall_max[0] = TOBI_WALL_PERIODIC;
-    d.domain_max[0] = fill.box_max[0] = 1;
-    d.domain_max[1] = 0.4;
-    fill.box_max[1] = 0.3;
-    d.domain_max[2] = fill.box_max[2] = 0;
-    OK(tobi_world_create(&d, NULL, &w, &err));
-    OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
-    return w;
+    const pool p = { 1, 0.4, 1, 0.3, 5, 0, tobi_default_fluid_def().viscosity, 1 };
+    return make_pool(&p, method, spacing);
 }
 
 static void liquid_that_gains_speed_is_not_pushed(void **state)
@@ -189,14 +188,21 @@ static tobi_status glide(void *user, double t, int64_t n, const double (*rest)[3
     return TOBI_OK;
 }
 
-static void add_square(tobi_world *w, int free)
+/* 0.1 m wide, by its lower left corner. */
+static tobi_body_def make_square(double left, double bottom)
 {
     tobi_body_def b = tobi_default_body_def();
     b.name = "square";
-    b.box_min[0] = 0.25;
-    b.box_max[0] = 0.35;
-    b.box_min[1] = 0.15;
-    b.box_max[1] = 0.25;
+    b.box_min[0] = left;
+    b.box_max[0] = left + 0.1;
+    b.box_min[1] = bottom;
+    b.box_max[1] = bottom + 0.1;
+    return b;
+}
+
+static void add_square(tobi_world *w, int free)
+{
+    tobi_body_def b = make_square(0.25, 0.15);
     b.motion = free ? NULL : glide;
     b.motion_rigid = 1;
     b.density = 600;
@@ -234,14 +240,9 @@ static void a_body_goes_as_outside(void **state)
     tobi_world *outer = make_tank("isph", 0.02, 1, 0.4), *nest = make_tank("isph", 0.01, 1, 0.4);
     const tobi_nest_def n = make_box(0.1, 0, 0.6, 0.6);
     tobi_nest_body at = { outer, 0 };
-    tobi_body_def b = tobi_default_body_def();
+    tobi_body_def b = make_square(0.25, 0.15);
     tobi_body_info coarse, fine;
     add_square(outer, 1);
-    b.name = "square";
-    b.box_min[0] = 0.25;
-    b.box_max[0] = 0.35;
-    b.box_min[1] = 0.15;
-    b.box_max[1] = 0.25;
     b.motion = tobi_nest_motion;
     b.motion_user = &at;
     b.motion_rigid = 1;
@@ -259,35 +260,11 @@ static void a_body_goes_as_outside(void **state)
 /* A full periodic channel that flows past a square, with a sensor in its wake. */
 static tobi_world *make_wake(double spacing)
 {
-    tobi_world_def d = tobi_default_world_def();
-    tobi_fluid_def fluid = tobi_default_fluid_def();
-    tobi_fill_def fill = tobi_default_fill_def();
-    tobi_probe_def probe = tobi_default_probe_def();
-    tobi_body_def b = tobi_default_body_def();
-    tobi_world *w = NULL;
-    d.method = "isph";
-    d.dimension = 2;
-    d.spacing = spacing;
-    d.threads = 1;
-    d.gravity[0] = d.gravity[1] = d.gravity[2] = 0;
-    d.wall_min[0] = d.wall_max[0] = TOBI_WALL_PERIODIC;
-    d.domain_max[0] = fill.box_max[0] = 1.2;
-    d.domain_max[1] = fill.box_max[1] = 0.8;
-    d.domain_max[2] = fill.box_max[2] = 0;
-    fill.velocity[0] = 0.5;
-    fluid.viscosity = 0.1;
-    probe.name = "wake";
-    probe.position[0] = 0.55;
-    probe.position[1] = 0.4;
-    b.name = "square";
-    b.box_min[0] = 0.4;
-    b.box_max[0] = 0.5;
-    b.box_min[1] = 0.35;
-    b.box_max[1] = 0.45;
-    OK(tobi_world_create(&d, NULL, &w, &err));
+    const pool p = { 1.2, 0.8, 1.2, 0.8, 0, 0.5, 0.1, 1 };
+    tobi_world *w = make_pool(&p, "isph", spacing);
+    const tobi_body_def b = make_square(0.4, 0.35);
     OK(tobi_world_add_body(w, &b, &err));
-    OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
-    OK(tobi_world_add_probe(w, &probe, &err));
+    add_probe(w, 0.55, 0.4);
     return w;
 }
 

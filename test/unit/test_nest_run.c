@@ -1,8 +1,8 @@
 /* Runs with nests: what is refused before a file is touched, checkpoints that do not belong together, whose
    failure and whose trouble it is. */
 #include "calls.h"
+#include "nest_rig.h"
 #include "record_rig.h"
-#include "tobiuo/scene.h"
 #include <dirent.h>
 #include <sys/resource.h>
 #include <signal.h>
@@ -16,26 +16,15 @@ static const char text[] =
     "              \"feedback\": true}],"
     " \"output\": {\"interval\": 0.02}}";
 
-typedef struct all { tobi_scene *scene; tobi_world *world; tobi_nests *nests; tobi_run *run; } all;
-
-static all make(void)
+static nest_rig make(void)
 {
-    all a = { 0 };
-    OK(tobi_scene_parse("scene.json", text, strlen(text), NULL, &a.scene, NULL, &err));
-    OK(tobi_scene_build(a.scene, &a.world, &err));
+    nest_rig a;
+    OK(nest_rig_build(text, &a, &err));
     OK(tobi_nests_create(a.scene, a.world, &a.nests, &err));
     return a;
 }
 
-static void drop(all *a)
-{
-    tobi_run_free(a->run);
-    tobi_nests_free(a->nests);
-    tobi_world_destroy(a->world);
-    tobi_scene_free(a->scene);
-}
-
-static tobi_status record(all *a, const char *dir, int how, tobi_error *err)
+static tobi_status record(nest_rig *a, const char *dir, int how, tobi_error *err)
 {
     const tobi_output_def *output = tobi_scene_output_def(a->scene);
     char *scene = tobi_scene_resolved(a->scene);
@@ -48,7 +37,7 @@ static tobi_status record(all *a, const char *dir, int how, tobi_error *err)
     return status;
 }
 
-static void step_to(all *a, double t)
+static void step_to(nest_rig *a, double t)
 {
     while (!tobi_run_done(a->run, t)) OK(tobi_run_step(a->run, t, NULL, &err));
 }
@@ -56,14 +45,14 @@ static void step_to(all *a, double t)
 /* A run to 0.04 s with checkpoints at 0.02 and 0.04. */
 static void make_checkpoints(const char *dir)
 {
-    all a = make();
+    nest_rig a = make();
     OK(record(&a, dir, TOBI_NESTS_CREATE, &err));
     for (int k = 1; k < 3; k++) {
         step_to(&a, 0.02*k);
         OK(tobi_run_checkpoint(a.run, &err));
     }
     OK(tobi_run_finish(a.run, "interrupted", &err));
-    drop(&a);
+    nest_rig_drop(&a);
 }
 
 /* Removes those of the newest, or all. */
@@ -88,7 +77,7 @@ static void remove_checkpoints(const char *dir, bool every)
 
 static void go_on(const char *dir, const char *why)
 {
-    all a = make();
+    nest_rig a = make();
     if (why) REFUSED(record(&a, dir, TOBI_NESTS_RESUME, &err), TOBI_DAMAGED, why);
     else {
         OK(record(&a, dir, TOBI_NESTS_RESUME, &err));
@@ -96,7 +85,7 @@ static void go_on(const char *dir, const char *why)
         step_to(&a, 0.04);
         OK(tobi_run_finish(a.run, "complete", &err));
     }
-    drop(&a);
+    nest_rig_drop(&a);
 }
 
 /* A power cut between the checkpoint of a nest and that of the scene, or one of them lost. */
@@ -122,11 +111,11 @@ static void checkpoints_belong_together(void **state)
 static void what_is_refused_costs_nothing(void **state)
 {
     (void)state;
-    all a = make();
+    nest_rig a = make();
     OK(record(&a, at("kept"), TOBI_NESTS_CREATE, &err));
     for (int k = 0; k < 2; k++) OK(tobi_run_add_nest(a.run, a.run, &err));
     REFUSED(tobi_run_add_nest(a.run, a.run, &err), TOBI_INVALID, "a run has 4 nests or fewer");
-    drop(&a);
+    nest_rig_drop(&a);
     a = make();
     unlink(at("kept/history.csv"));
     unlink(at("kept/resolved.json"));
@@ -144,7 +133,7 @@ static void what_is_refused_costs_nothing(void **state)
     rmdir(at("odd/nests"));
     assert_int_equal(symlink(at("kept"), at("odd/nests")), 0);
     REFUSED(record(&a, at("odd"), TOBI_NESTS_REPLACE, &err), TOBI_INVALID, "odd/nests is a symbolic link");
-    drop(&a);
+    nest_rig_drop(&a);
 }
 
 static tobi_status fail_late(void *user, double t, int64_t n, const double (*rest)[3], double (*position)[3],
@@ -158,7 +147,7 @@ static tobi_status fail_late(void *user, double t, int64_t n, const double (*res
 static void a_failure_has_the_name_of_the_nest(void **state)
 {
     (void)state;
-    all a = make();
+    nest_rig a = make();
     tobi_body_def b = tobi_default_body_def();
     b.name = "plate";
     b.box_min[0] = 0.03;
@@ -174,7 +163,7 @@ static void a_failure_has_the_name_of_the_nest(void **state)
     while (status == TOBI_OK && !tobi_run_done(a.run, 0.1)) status = tobi_run_step(a.run, 0.1, NULL, &why);
     assert_int_equal(status, TOBI_SCRIPT);
     if (!strstr(why.text, "nest 'left': ") || !strstr(why.text, "the hinge broke")) fail_msg("%s", why.text);
-    drop(&a);
+    nest_rig_drop(&a);
 }
 
 /* No file may grow beyond a byte: the scene's run tells what its nests lack, too. */
@@ -183,7 +172,7 @@ static void trouble_of_nests_is_told(void **state)
     (void)state;
     const struct rlimit none = { 1, RLIM_INFINITY };
     struct rlimit before;
-    all a = make();
+    nest_rig a = make();
     OK(record(&a, at("full"), TOBI_NESTS_CREATE, &err));
     tobi_run_go_on(a.run, 1);
     getrlimit(RLIMIT_FSIZE, &before);
@@ -200,14 +189,33 @@ static void trouble_of_nests_is_told(void **state)
     assert_true(of_nest >= 2 && unwritten >= 3);
     if (!strstr(tobi_run_losses(a.run), "nest left: ") || !strstr(tobi_run_losses(a.run), "nest right: "))
         fail_msg("%s", tobi_run_losses(a.run));
-    drop(&a);
+    nest_rig_drop(&a);
+}
+
+/* One nest cannot write its end: that is told, and the others and the scene end all the same. */
+static void one_nest_that_cannot_end(void **state)
+{
+    (void)state;
+    nest_rig a = make();
+    size_t length;
+    OK(record(&a, at("ended"), TOBI_NESTS_CREATE, &err));
+    step_to(&a, 0.02);
+    assert_int_equal(mkdir(at("ended/nests/left/summary.json"), 0777), 0);
+    REFUSED(tobi_run_finish(a.run, "complete", &err), TOBI_INVALID, "left/summary.json");
+    char *scene = read_file(at("ended/summary.json"), &length);
+    char *right = read_file(at("ended/nests/right/summary.json"), &length);
+    assert_non_null(strstr(scene, "\"outcome\": \"failed\""));
+    assert_non_null(strstr(right, "\"outcome\": \"complete\""));
+    free(scene);
+    free(right);
+    nest_rig_drop(&a);
 }
 
 /* Nests step without a run, too; a run that ends leaves their worlds; sizes add up. */
 static void nests_without_a_run(void **state)
 {
     (void)state;
-    all a = make();
+    nest_rig a = make();
     tobi_run_size size, with;
     OK(tobi_run_estimate(a.world, tobi_scene_output_def(a.scene), 0.1, &size, &err));
     with = size;
@@ -224,46 +232,44 @@ static void nests_without_a_run(void **state)
     tobi_nests_close(a.nests);
     tobi_nests_close(NULL);
     OK(tobi_nests_follow(NULL, &err));
-    drop(&a);
+    nest_rig_drop(&a);
 }
 
 /* The scene with one piece of its text replaced. */
-static tobi_status make_other(const char *old, const char *other, all *a, tobi_error *err)
+static tobi_status make_other(const char *old, const char *other, nest_rig *a, tobi_error *err)
 {
     char scene[2000];
     const char *place = strstr(text, old);
     assert_non_null(place);
     snprintf(scene, sizeof scene, "%.*s%s%s", (int)(place - text), text, other, place + strlen(old));
-    *a = (all){ 0 };
-    tobi_status status = tobi_scene_parse("scene.json", scene, strlen(scene), NULL, &a->scene, NULL, err);
-    if (status == TOBI_OK) status = tobi_scene_build(a->scene, &a->world, err);
-    return status == TOBI_OK ? tobi_nests_create(a->scene, a->world, &a->nests, err) : status;
+    TOBI_TRY(nest_rig_build(scene, a, err));
+    return tobi_nests_create(a->scene, a->world, &a->nests, err);
 }
 
 static void what_a_scene_may_not_have(void **state)
 {
     char more[600];
-    all a;
+    nest_rig a;
     (void)state;
     REFUSED(make_other("left", "to the left", &a, &err), TOBI_INVALID,
             "\"to the left\" names a folder: allowed are letters, digits, _ and -");
-    drop(&a);
+    nest_rig_drop(&a);
     snprintf(more, sizeof more, "\"solids\": [{\"name\": \"jelly\", \"fill\": [{\"box\": {\"min\": "
              "[0.1, 0.1], \"max\": [0.2, 0.16]}}]}], \"output\"");
     REFUSED(make_other("\"output\"", more, &a, &err), TOBI_UNSUPPORTED, "nests are for liquids alone");
-    drop(&a);
+    nest_rig_drop(&a);
     write_file(at("swim.lua"), "function deform(x, y, z, t) return x, y + 0.001*math.sin(t)*x, z end");
     snprintf(more, sizeof more, "\"bodies\": [{\"name\": \"eel\", \"dynamics\": \"free\", \"box\": "
              "{\"min\": [0.1, 0.04], \"max\": [0.2, 0.08]}, \"motion\": {\"script\": \"%s\"}}], "
              "\"output\"", at("swim.lua"));
     REFUSED(make_other("\"output\"", more, &a, &err), TOBI_UNSUPPORTED, "body 'eel' swims");
-    drop(&a);
+    nest_rig_drop(&a);
 }
 
 static void states_are_of_their_world(void **state)
 {
     (void)state;
-    all a = make();
+    nest_rig a = make();
     tobi_world *nest = tobi_nests_world(a.nests, 0, NULL);
     OK(tobi_nests_follow(a.nests, &err));
     OK(tobi_world_save(a.world, at("outer.h5"), &err));
@@ -271,7 +277,7 @@ static void states_are_of_their_world(void **state)
     REFUSED(tobi_world_load(a.world, at("nest.h5"), &err), TOBI_INVALID, "is of a nest, which goes on");
     REFUSED(tobi_world_load(nest, at("outer.h5"), &err), TOBI_INVALID, "is of a world that is no nest");
     OK(tobi_world_load(nest, at("nest.h5"), &err));
-    drop(&a);
+    nest_rig_drop(&a);
 }
 
 static int enter(void **state)
@@ -293,6 +299,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(checkpoints_belong_together), cmocka_unit_test(what_is_refused_costs_nothing),
         cmocka_unit_test(a_failure_has_the_name_of_the_nest), cmocka_unit_test(trouble_of_nests_is_told),
+        cmocka_unit_test(one_nest_that_cannot_end),
         cmocka_unit_test(nests_without_a_run), cmocka_unit_test(what_a_scene_may_not_have),
         cmocka_unit_test(states_are_of_their_world)
     };
