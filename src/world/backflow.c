@@ -78,14 +78,13 @@ static int is_free(const tobi_beyond *list, int64_t count, int64_t k, const doub
     return 1;
 }
 
-static int is_open(const tobi_world *w, const double x[3])
+int tobi_openings_is_open(const tobi_system *s, const double x[3])
 {
-    const tobi_box *box = &w->system[0].box;
-    const double side = SIDE*w->system[0].smoothing.spacing;
-    for (int a = 0; a < box->dimension; a++)
-        if (!box->periodic[a] && (x[a] < side || x[a] > box->size[a] - side)) return 0;
-    for (int b = 0; b < w->sim.body_count; b++)
-        if (tobi_bvh_inside(w->sim.bodies[b].bvh, x)) return 0;
+    const double side = SIDE*s->smoothing.spacing;
+    for (int a = 0; a < s->box.dimension; a++)
+        if (!s->box.periodic[a] && (x[a] < side || x[a] > s->box.size[a] - side)) return 0;
+    for (int b = 0; b < s->sim->body_count; b++)
+        if (tobi_bvh_inside(s->sim->bodies[b].bvh, x)) return 0;
     return 1;
 }
 
@@ -120,7 +119,7 @@ static tobi_status fill(tobi_world *w, const tobi_opening *o, int64_t count, tob
             const tobi_double3 *p = &s->particles.position[n];
             free = distance2((double[3]){ p->x, p->y, p->z }, x) >= ROOM*ROOM*d*d;
         }
-        if (free && is_open(w, x)) TOBI_TRY(repeat(s, b->row, x, err));
+        if (free && tobi_openings_is_open(s, x)) TOBI_TRY(repeat(s, b->row, x, err));
     }
     return TOBI_OK;
 }

@@ -18,8 +18,6 @@ static const double ROOM = 0.2, ROOM_OF_HOLE = 0.95;
 static const double DRY = 2;
 /* Steps from one search for holes to the next. */
 enum { HOLES = 4 };
-/* Spacings from sides of the domain, where no particle is made. */
-static const double SIDE = 0.2;
 
 /* Looks for a particle nearer than `reach` to a place, m. */
 typedef struct looking { double reach; int found; } looking;
@@ -37,16 +35,6 @@ static int is_near(const tobi_system *s, const double x[3], double reach)
     const sph_range cells = sph_cells_around(s, x, reach + s->smoothing.spacing);
     sph_visit(s, x, &cells, look, &l);
     return l.found;
-}
-
-static int is_open(const tobi_system *s, const double x[3])
-{
-    const double side = SIDE*s->smoothing.spacing;
-    for (int a = 0; a < s->box.dimension; a++)
-        if (!s->box.periodic[a] && (x[a] < side || x[a] > s->box.size[a] - side)) return 0;
-    for (int b = 0; b < s->sim->body_count; b++)
-        if (!s->sim->bodies[b].is_absent && tobi_bvh_inside(s->sim->bodies[b].bvh, x)) return 0;
-    return 1;
 }
 
 /* m: as tobi_nest_outside, of a row of this or the outer system. */
@@ -107,7 +95,7 @@ static int find_part(const tobi_system *s, int64_t j, int k, double room, double
     for (int a = 0; a < s->box.dimension; a++, k /= parts)
         x[a] += outer->smoothing.spacing*((k%parts + 0.5)/parts - 0.5);
     return tobi_nest_outside(&s->sim->nest, s->box.dimension, x) > 0 &&
-           !is_near(s, x, room*s->smoothing.spacing) && is_open(s, x);
+           !is_near(s, x, room*s->smoothing.spacing) && tobi_openings_is_open(s, x);
 }
 
 static int count_parts(const tobi_system *s)

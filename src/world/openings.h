@@ -23,6 +23,8 @@ tobi_status tobi_rows_choose(tobi_world *w, const tobi_system *s, tobi_opening_w
                              int64_t *count, tobi_error *err);
 /* backflow.c: fills the buffers of outlets whose pressure is given. */
 tobi_status tobi_openings_give(tobi_world *w, tobi_error *err);
+/* Whether a new particle may be placed there: a little away from sides, and outside of bodies. */
+int tobi_openings_is_open(const tobi_system *s, const double x[3]);
 /* How far beyond its plane an outlet keeps particles, m. */
 double tobi_outlet_depth(const tobi_opening *o, const tobi_smoothing_constants *c);
 /* Depths of its buffer: how far behind an inlet regions are cut out. */
