@@ -12,8 +12,7 @@ static const char *name_of(const report *r, size_t k)
     const json_t *one = json_array_get(report_value(r, "nests"), k);
     const char *name = json_string_value(json_object_get(one, "name"));
     if (!one) return NULL;
-    return name && strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
-                       strlen(name) ? name : "";
+    return tobi_nest_name_fits(name) ? name : "";
 }
 
 static char *path_of(const report *r, const char *nest, const char *file)

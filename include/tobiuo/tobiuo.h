@@ -144,6 +144,8 @@ TOBI_API tobi_status tobi_world_add_note(tobi_world *world, const char *text, to
    outlive it. TOBI_INVALID, TOBI_UNSUPPORTED in words (docs/decisions/0157-nests.md). */
 TOBI_API tobi_status tobi_world_nest(tobi_world *world, tobi_world *outer, const tobi_nest_def *def,
                                      tobi_error *err);
+/* Whether a name fits a nest, and the folder of its results: letters, digits, _ and -, at most 63. */
+TOBI_API int tobi_nest_name_fits(const char *name);
 /* One of the steps that tobi_world_advance takes to time t, s, which the last one hits exactly: the nests of
    the world follow after each. */
 TOBI_API tobi_status tobi_world_step_to(tobi_world *world, double t, tobi_error *err);

@@ -199,13 +199,6 @@ static tobi_status clear_nest(const char *dir, const char *name, tobi_error *err
     return status;
 }
 
-/* Of a scene; a name that would lead elsewhere is none. */
-static bool is_nest_name(const char *name)
-{
-    return name && *name && strlen(name) < 200 &&
-           name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")] == '\0';
-}
-
 tobi_status tobi_record_clear_nests(const char *dir, const char *resolved, tobi_error *err)
 {
     json_t *scene = resolved ? json_loads(resolved, 0, NULL) : NULL;
@@ -213,7 +206,7 @@ tobi_status tobi_record_clear_nests(const char *dir, const char *resolved, tobi_
     tobi_status status = TOBI_OK;
     for (size_t k = 0; k < json_array_size(list) && status == TOBI_OK; k++) {
         const char *name = json_string_value(json_object_get(json_array_get(list, k), "name"));
-        if (is_nest_name(name)) status = clear_nest(dir, name, err);
+        if (tobi_nest_name_fits(name)) status = clear_nest(dir, name, err);
     }
     json_decref(scene);
     return status;

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "scene/scene.h"
 #include "tobiuo/run.h"
-#include <ctype.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,10 +30,8 @@ void tobi_nests_check(const tobi_scene *scene, tobi_source *source)
         const tobi_nest_def *n = &scene->tank.nests[k];
         const tobi_place entry = { &list, NULL, (size_t)k }, name = { &entry, "name", 0 },
                          follow = { &entry, "follow", 0 };
-        int good = 1;
         tobi_check_name(scene, source, &entry);
-        for (const char *c = n->name; c && *c; c++) good &= isalnum((unsigned char)*c) || strchr("_-", *c);
-        if (!good)
+        if (n->name && !tobi_nest_name_fits(n->name))
             tobi_source_mistake(source, &name, "\"%s\" names a folder: allowed are letters, digits, _ and -",
                                 n->name);
         if (n->follow && !tobi_scene_find_body(scene, n->follow))

@@ -41,6 +41,12 @@ static tobi_status refuse(const char *key, const tobi_nest_def *def, const char 
     return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "nest '%s': %s", def->name, why), "%s", key);
 }
 
+int tobi_nest_name_fits(const char *name)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    return name && *name && strlen(name) <= 63 && strspn(name, letters) == strlen(name);
+}
+
 static tobi_status check_box(const tobi_world *outer, const tobi_nest_def *def, tobi_error *err)
 {
     const tobi_box *box = &outer->system[0].box;
@@ -178,6 +184,8 @@ tobi_status tobi_world_nest(tobi_world *w, tobi_world *outer, const tobi_nest_de
     TOBI_NEED_WORLD(outer);
     TOBI_NEED(def, "the definition");
     TOBI_TRY(tobi_param_check(&tobi_nest_table, def, err));
+    if (!tobi_nest_name_fits(def->name))
+        return refuse("name", def, tr("it names a folder: allowed are letters, digits, _ and -"), err);
     TOBI_TRY(check_worlds(w, outer, def, err));
     TOBI_TRY(check_box(outer, def, err));
     const tobi_box *box = &w->system[0].box;

@@ -323,6 +323,9 @@ static void what_is_refused(void **state)
     OK(tobi_world_add_fluid(airy, &air, &high, 1, &err));
     OK(tobi_world_add_fluid(below, &air, &high, 1, &err));
     REFUSED(try_nest(below, airy, n, &err), TOBI_UNSUPPORTED, "a nest takes fluids up to 1 : 2");
+    n.name = "../up";
+    REFUSED(try_nest(nest, outer, n, &err), TOBI_INVALID, "allowed are letters, digits, _ and -");
+    n.name = "near";
     n.follow = "whale";
     REFUSED(try_nest(nest, outer, n, &err), TOBI_INVALID, "no body 'whale' to follow");
     n.follow = NULL;
