@@ -251,6 +251,12 @@ char *list_gaps(const char *dir, const char *view, const pictures *p);
 int link_pictures(const char *dir, const char *view, const pictures *p, char *folder);
 /* Those of the folder, and it. */
 void clear_pictures(const char *folder, const char *view);
+/* nest_pictures.c: results of the nests of the run in dir; both outlive them. Ends without memory. Adds what
+   they have at its time to a moment of the run, and says what they lack. NULL is fine. */
+typedef struct nest_results nest_results;
+nest_results *open_nests(const tobi_scene *scene, const char *dir);
+void add_nests(nest_results *nests, const tobi_looks *looks, tobi_moment *moment);
+void close_nests(nest_results *nests);
 /* draw.c: draws from the results of the run in dir, with values of its scene changed, the pictures that
    folder/frames lacks. Returns the exit code. */
 int draw_missing(const char *dir, const char *view, const overrides *set, const char *folder);

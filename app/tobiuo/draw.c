@@ -62,6 +62,7 @@ typedef struct source {
     const tobi_view_def *view;         /* of the scene */
     tobi_looks looks;
     tobi_results *results;
+    nest_results *nests;
     tobi_moment moment;
     tobi_drawing *drawing;
 } source;
@@ -71,6 +72,7 @@ static void free_source(source *s)
     tobi_drawing_free(s->drawing);
     tobi_moment_free(&s->moment);
     tobi_results_free(s->results);
+    close_nests(s->nests);
     tobi_looks_free(&s->looks);
     tobi_scene_free(s->scene);
 }
@@ -122,6 +124,7 @@ static int open_source(source *s, const char *dir, const char *view, const overr
     overrides_free(&own);
     if (code == 0) code = find_view(s, dir, view);
     if (code == 0 && tobi_results_open(dir, &s->results, &err) != TOBI_OK) code = complain("%s", err.text);
+    if (code == 0 && s->view->nests) s->nests = open_nests(s->scene, dir);
     return code;
 }
 
@@ -134,6 +137,7 @@ static tobi_status draw_output(source *s, const char *dir, int64_t output, tobi_
     tobi_status status = tobi_results_read(s->results, output, &s->moment, err);
     if (status == TOBI_OK && s->view->foam)
         status = tobi_results_read_foam(s->results, output, &s->moment, err);
+    if (status == TOBI_OK) add_nests(s->nests, &s->looks, &s->moment);
     if (status == TOBI_OK && s->view->paths) status = tobi_tracks_read(dir, &s->moment, err);
     if (status == TOBI_OK) status = tobi_drawing_make(&s->looks, &s->moment, s->view, &s->drawing, err);
     return status;

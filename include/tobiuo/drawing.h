@@ -28,6 +28,7 @@ typedef struct tobi_body_look {
     char   body[64];                   /* its own name                                                */
     double color[3], opacity;          /* RGB, 0 to 255; -1 = by its number                           */
     double rest[3];                    /* m, mean of its vertices at rest                             */
+    double middle[3];                  /* m, of the box around it when these looks were taken         */
     int    visible, hollow, is_line;
     tobi_image *image;                 /* owned; NULL = none                                          */
     float  (*uv)[3][2];                /* owned: of the corners of the triangles of its surface       */
@@ -47,7 +48,9 @@ typedef struct tobi_inlet_look {
 /* What of a world pictures need and does not change. Lists owned: tobi_looks_free. */
 typedef struct tobi_looks {
     int    dimension, threads;
+    int    is_nest;                    /* 1: these are of a nest; the caller sets it                  */
     double box_min[3], box_max[3], gravity[3], spacing;      /* m, m/s2; the spacing is the largest */
+    double rim;                        /* m, of a nest whose liquids had these spacings               */
     double speed;                      /* m/s, where its colours end; 0 = each picture's own range    */
     int    material_count, body_count, inlet_count;
     tobi_material_look *materials;
@@ -76,6 +79,17 @@ TOBI_API int tobi_looks_hides(const tobi_looks *looks, double time, const double
 /* The number that a field's colour shows, of particle i: of a vector its length, of the vorticity in 2-D that
    about z, as files have it in floats. field: NULL gives 0. */
 TOBI_API double tobi_drawing_value(const tobi_looks *looks, const tobi_moment_field *field, int64_t i);
+
+/* Where the box of a nest is at a moment of the scene, or of the nest itself, whose looks these are. 0: it
+   goes along with a body that the moment has no surface of. */
+TOBI_API int tobi_nest_box(const tobi_looks *looks, const tobi_nest_def *nest, const tobi_moment *moment,
+                           double box[2][3]);
+/* Adds the particles of a nest at the same time, with the moment's fields, NAN where it has none of that
+   name: those in the box and, for surfaces, near it. box: as in the moment. On failure nothing is added. */
+TOBI_API tobi_status tobi_moment_add_nest(tobi_moment *moment, const tobi_moment *nest,
+                                          const double box[2][3], double spacing, tobi_error *err);
+/* 1: particle i is where its liquid counts: outside of all nests, or in the box of its own. */
+TOBI_API int tobi_moment_shows(const tobi_moment *moment, int64_t i);
 
 typedef struct tobi_drawing tobi_drawing;
 /* The picture of a moment as a view shows it. It borrows looks and moment until it is freed. Fields that

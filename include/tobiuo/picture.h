@@ -115,6 +115,11 @@ typedef struct tobi_picture {
     const tobi_picture_mesh *meshes;
     int mesh_count;
 
+    const double (*nests)[2][3];       /* m, lower and upper corners of boxes; infinite: without a side */
+    int nest_count;
+    const uint8_t *nest;               /* of each particle k: only that in nests[k - 1] is shown, 0: only that
+                                          outside of all; of a group all have one; NULL: all are shown  */
+
     int64_t foam_count;                /* spray, foam and bubbles: white points                         */
     const double (*foam)[3];           /* m; not finite = not drawn                                     */
     const uint8_t *foam_kind;          /* TOBI_SPRAY, TOBI_FOAM, TOBI_BUBBLE of tobiuo/foam.h           */

@@ -4,6 +4,7 @@
 #ifndef TOBIUO_RESULTS_H
 #define TOBIUO_RESULTS_H
 #include "tobiuo/base.h"
+#include "tobiuo/nest.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -46,6 +47,11 @@ typedef struct tobi_moment {
     int64_t foam_count;                /* 0 until tobi_results_read_foam                          */
     double (*foam)[3];                 /* m                                                       */
     uint8_t *foam_kind;                /* TOBI_SPRAY, TOBI_FOAM, TOBI_BUBBLE of tobiuo/foam.h      */
+    int     nest_count;                /* 0 until tobi_moment_add_nest                            */
+    double  nests[TOBI_NEST_LIMIT][2][3];      /* m, corners of their boxes, infinite where a side of the
+                                          domain is nearer than the rim is wide                   */
+    double  nest_spacing[TOBI_NEST_LIMIT];     /* m                                               */
+    uint8_t *nest;                     /* of each particle: 1 + its nest, 0: it is of the scene; or NULL */
 } tobi_moment;
 
 /* Opens the results in dir. TOBI_NOT_FOUND: there is no run; TOBI_DAMAGED: its list is no list. */

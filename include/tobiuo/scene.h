@@ -86,6 +86,8 @@ TOBI_API const char *tobi_scene_import_program(const tobi_scene *scene);
 TOBI_API tobi_status tobi_scene_import(const char *old_path, const char *new_path, int force, char **table,
                                        tobi_report **report, tobi_error *err);
 
+/* A nest as the scene has it; NULL past the end. Owned by the scene. */
+TOBI_API const tobi_nest_def *tobi_scene_nest_def(const tobi_scene *scene, int index);
 /* The nests of a scene, each a world of its own (tobi_world_nest); none is fine. The scene and the outer
    world must outlive them. Fails as tobi_scene_build and tobi_world_nest do. */
 typedef struct tobi_nests tobi_nests;

@@ -402,6 +402,7 @@ typedef struct tobi_view_def {
     double      angle;                /* degrees, vertical field of view; 0 = a view that fits        */
     int         look, field_of;       /* TOBI_LOOK_*, TOBI_FIELD_OF_* of tobiuo/picture.h             */
     int         map;                  /* of colours, see tobi_color_map_name                          */
+    int         nests;                /* 1: in the boxes of nests their liquid instead of the scene's */
     const char *field;                /* that gives the colours; NULL = none                          */
     double      min, max;             /* values at the ends of the colours; equal = of each picture   */
     int         width, height;        /* pixels; 0 = one that fits                                    */
@@ -409,8 +410,7 @@ typedef struct tobi_view_def {
     int         arrows;               /* 1: velocities as arrows                                      */
     int         isolines, streamlines;      /* of equal value; so many along the longest edge         */
     int         paths;                /* 1: where the centres of bodies have been                     */
-    int         axes;                 /* 1: ticks along edges of the domain                           */
-    int         transparent;          /* 1: nothing behind                                            */
+    int         axes, transparent;    /* 1: ticks along edges of the domain, nothing behind           */
     int         foam;                 /* 1: spray, foam and bubbles, where tobi_foam_write wrote them   */
     const char *follow;               /* name of the body that the camera moves with; NULL = none     */
     double      clip_point[3], clip_normal[3];       /* m, 1; a normal of 0 = no plane                */

@@ -161,6 +161,7 @@ void tobi_moment_free(tobi_moment *m)
     free(m->tracks);
     free(m->foam);
     free(m->foam_kind);
+    free(m->nest);
     *m = (tobi_moment){ 0 };
 }
 

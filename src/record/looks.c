@@ -3,6 +3,7 @@
 #include "mpm/particle_fields.h"
 #include "record/record.h"
 #include "world/fit.h"
+#include "world/nest.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
@@ -61,6 +62,8 @@ static tobi_status add_bodies(const tobi_world *w, const tobi_record_name *names
         choose_surface(b, looks->dimension, look);
         memcpy(look->name, names[k], sizeof look->name);
         snprintf(look->body, sizeof look->body, "%s", b->name);
+        tobi_nest_middle(&w->sim, k, look->middle);
+        for (int a = 0; a < 3; a++) look->middle[a] += b->lower[a];
         for (int64_t i = 0; i < b->mesh.vertex_count; i++)
             for (int a = 0; a < 3; a++)
                 look->rest[a] += b->mesh.vertices[i][a]/(double)b->mesh.vertex_count;
@@ -190,6 +193,7 @@ tobi_status tobi_world_looks(const tobi_world *w, tobi_looks *looks, tobi_error 
     TOBI_TRY(tobi_world_expected_speed(w, &looks->speed, err));
     for (int k = 0; k < w->system_count; k++)
         looks->spacing = fmax(looks->spacing, tobi_world_spacing(w, &w->system[k]));
+    looks->rim = tobi_nest_rim(&w->system[0]);
     for (int a = 0; a < 3; a++) {
         looks->box_min[a] = def->domain_min[a], looks->box_max[a] = def->domain_max[a];
         looks->gravity[a] = def->gravity[a];

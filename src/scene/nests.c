@@ -39,6 +39,11 @@ void tobi_nests_check(const tobi_scene *scene, tobi_source *source)
     }
 }
 
+const tobi_nest_def *tobi_scene_nest_def(const tobi_scene *scene, int index)
+{
+    return scene && index >= 0 && index < scene->tank.nest_count ? &scene->tank.nests[index] : NULL;
+}
+
 static int is_inside(const tobi_nest_def *n, const double x[3], int dimension)
 {
     for (int a = 0; a < dimension; a++)

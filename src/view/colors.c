@@ -24,7 +24,7 @@ void view_find_range(const tobi_picture *f, double *low, double *high)
     if (*low < *high && isfinite(*low) && isfinite(*high)) return;
     *low = *high = 0;
     for (int64_t i = 0; f->values && i < f->particle_count; i++) {
-        if (!isfinite(f->values[i]) || view_has_own(f, i)) continue;
+        if (!isfinite(f->values[i]) || view_has_own(f, i) || !view_is_in_nest(f, i)) continue;
         *low = fmin(*low, f->values[i]);
         *high = fmax(*high, f->values[i]);
     }

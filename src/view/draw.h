@@ -186,6 +186,15 @@ void view_add_triangle(geometry *g, const cut *cut, const vec place[3], const ve
 /* m beyond the plane, or beyond `half` a slice; -INFINITY without a plane. */
 double view_beyond(const tobi_picture *f, const double p[3], double half);
 
+/* nests.c: m beyond where the liquid of a nest, 0: of the scene, is shown; below 0: within. Of the particle i
+   of a picture. */
+double view_beyond_nests(const double (*boxes)[2][3], int count, int nest, const double x[3]);
+static inline int view_nest_of(const tobi_picture *f, int64_t i) { return f->nest ? f->nest[i] : 0; }
+static inline bool view_is_in_nest(const tobi_picture *f, int64_t i)
+{
+    return !f->nest || view_beyond_nests(f->nests, f->nest_count, f->nest[i], f->positions[i]) <= 0;
+}
+
 /* tiles.c: which faces and balls touch which square of the canvas, so that each square is one thread's. */
 enum { TILE = 32, MOST_SAMPLES = 4, MOST_SIDE = TILE*MOST_SAMPLES };     /* pixels; samples */
 typedef struct tiles {
@@ -253,6 +262,7 @@ struct surface_request {
     double  radius;              /* m, half the spacing of these particles                         */
     float   drop;                /* m, radius of a ball for a particle of its own; 0 = none        */
     bool    joins;               /* particles that touch others are within the surface             */
+    int     nest;                /* of these particles, see tobi_picture                           */
     bool    evens;               /* particles count the more the fewer are around: nothing shrinks */
 };
 /* Particles outside of the surface become balls of drops. *around: 1 if the eye is inside of it. */
@@ -344,10 +354,10 @@ bool view_draw_arrows(canvas *c, const tobi_picture *f);
 /* The particle has a colour of its own, whatever its value. */
 static inline bool view_has_own(const tobi_picture *f, int64_t i) { return f->own && f->own[i][0] >= 0; }
 
-/* On this side of the clip plane, or in the slice. */
+/* On this side of the clip plane, or in the slice; where its liquid counts. */
 static inline bool view_is_shown(const tobi_picture *f, int64_t i)
 {
-    return !f->clip || view_beyond(f, f->positions[i], 0.5*f->slice) <= 0;
+    return (!f->clip || view_beyond(f, f->positions[i], 0.5*f->slice) <= 0) && view_is_in_nest(f, i);
 }
 
 /* What the filter of PNG needs: rows, each of which gets a byte in front. */

@@ -2,6 +2,7 @@
    Drawback: positions are copied for each view. */
 #include "tobiuo/drawing.h"
 #include "base/error.h"
+#include "view/draw.h"
 #include "view/drawing.h"
 #include <math.h>
 #include <stdio.h>
@@ -20,6 +21,7 @@ void tobi_drawing_free(tobi_drawing *d)
     free(d->opaque);
     free(d->group);
     free(d->radii);
+    free(d->nest);
     free(d->meshes);
     free(d->paths);
     free(d->skins);
@@ -167,7 +169,8 @@ static void take_skin(tobi_drawing *d, int64_t i, int64_t to, int material)
 static tobi_status make_arrays(tobi_drawing *d, int arrows, tobi_error *err)
 {
     const size_t n = (size_t)d->moment->count + 1;
-    const int differ = tobi_looks_differ(d->looks);
+    const int nests = d->view->nests && d->moment->nest && d->moment->nest_count > 0;
+    const int differ = tobi_looks_differ(d->looks) || nests;
     const int own = d->view->field_of && d->looks->material_count > 0;
     d->positions = malloc(n*sizeof *d->positions);
     d->values = malloc(n*sizeof *d->values);
@@ -176,8 +179,10 @@ static tobi_status make_arrays(tobi_drawing *d, int arrows, tobi_error *err)
     if (arrows) d->velocities = malloc(n*sizeof *d->velocities);
     if (differ) d->radii = malloc(n*sizeof *d->radii);
     if (own) d->own = malloc(n*sizeof *d->own);
+    if (nests) d->nest = malloc(n);
     const int enough = d->positions && d->values && d->opaque && d->group && (!arrows || d->velocities) &&
-                       (!differ || d->radii) && (!own || d->own);
+                       (!differ || d->radii) && (!own || d->own) &&
+                       (!nests || d->nest);
     return enough ? TOBI_OK : no_memory(err);
 }
 
@@ -187,6 +192,29 @@ static void take_own_color(tobi_drawing *d, int64_t to, int color)
     static const float none[3] = { -1, -1, -1 };
     const int shows = d->opaque[to] == (d->view->field_of == TOBI_FIELD_OF_SOLIDS);
     memcpy(d->own[to], shows ? none : d->palette[color], sizeof none);
+}
+
+/* m: how far the surface around a particle may reach beyond the place that it is shown in, in spacings. */
+static const double MARGIN = 6;
+
+/* Without nests what is theirs is left out, with them what surfaces do not need. */
+static int is_taken(const tobi_drawing *d, int64_t i)
+{
+    const tobi_moment *m = d->moment;
+    const int nest = m->nest ? m->nest[i] : 0;
+    if (!d->nest) return nest == 0;
+    const double spacing = nest ? m->nest_spacing[nest - 1] : d->looks->spacing;
+    const double most = d->view->look == TOBI_LOOK_PARTICLES ? 0 : MARGIN*spacing;
+    return view_beyond_nests((const double (*)[2][3])m->nests, m->nest_count, nest, m->positions[i]) <= most;
+}
+
+/* Its own size; liquids of different nests have different surfaces. */
+static void take_nest(tobi_drawing *d, int64_t i, int64_t to)
+{
+    const int nest = d->moment->nest[i];
+    d->nest[to] = (uint8_t)nest;
+    if (nest) d->radii[to] = 0.5*d->moment->nest_spacing[nest - 1];
+    d->group[to] -= nest*(d->looks->material_count + 1);
 }
 
 /* A value for each particle that is shown, its place and velocity. */
@@ -208,6 +236,7 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
         const int material = number_at(d->material, i, 0), piece = number_at(d->piece, i, -1);
         const tobi_material_look *look = look_of(d->looks, material);
         if (!look->visible || tobi_looks_hides(d->looks, m->time, m->positions[i])) continue;
+        if (!is_taken(d, i)) continue;
         const int64_t to = d->count++;
         memcpy(d->positions[to], m->positions[i], sizeof *d->positions);
         for (int k = 0; arrows && k < 3; k++) d->velocities[to][k] = (float)velocity->values[3*i + k];
@@ -215,6 +244,7 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
         if (d->radii) d->radii[to] = tobi_looks_radius(d->looks, material);
         if (d->skin) take_skin(d, i, to, material);
         d->group[to] = look->liquid ? -look->kind : piece >= 0 ? 1 + piece : -material;
+        if (d->nest) take_nest(d, i, to);
         const int color = tobi_drawing_color(d, material, number_at(d->part, i, 0), piece);
         d->values[to] = d->has_palette ? (float)color
                       : component >= 0 && component < field->components
@@ -277,6 +307,7 @@ static void set_range(tobi_drawing *d)
         low = INFINITY, high = -INFINITY;
         for (int64_t i = 0; i < d->count; i++) {
             if (!isfinite(d->values[i]) || (d->own && d->own[i][0] >= 0)) continue;
+            if (!view_is_in_nest(&d->picture, i)) continue;
             low = fmin(low, d->values[i]);
             high = fmax(high, d->values[i]);
         }
@@ -375,7 +406,10 @@ static void set_picture(tobi_drawing *d)
     p->radius = 0.5*s->spacing;
     p->radii = d->radii;
     if (solids) p->opaque = d->opaque;
-    if (solids || liquids) p->group = d->group;
+    if (solids || liquids || d->nest) p->group = d->group;
+    p->nests = (const double (*)[2][3])d->moment->nests;
+    p->nest_count = d->nest ? d->moment->nest_count : 0;
+    p->nest = d->nest;
     p->value_max = d->has_palette ? d->colors - 1 : s->speed;
     if (d->has_palette) p->palette = (const float (*)[3])d->palette, p->palette_count = d->colors;
     write_time(d->moment->time, d->title, sizeof d->title);

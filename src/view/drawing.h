@@ -16,6 +16,7 @@ struct tobi_drawing {
     uint8_t *opaque;
     int32_t *group;                    /* kind, material or piece                       */
     double *radii;                     /* m; NULL: all particles have one               */
+    uint8_t *nest;                     /* see tobi_moment; NULL: no nests are shown     */
     float (*palette)[3];
     int colors;                        /* in the palette                                */
     int has_palette;                   /* 0: colours by a field                         */

@@ -266,11 +266,28 @@ void view_draw_box(canvas *c, const tobi_picture *f, bool over_water)
     draw_edges(c, f->dimension, f->box_min, f->box_max, 0, 1.3f, color, over_water);
 }
 
+/* The boxes of nests among their particles, as far as the domain goes. */
+static void draw_nests(canvas *c, const tobi_picture *f, double lift)
+{
+    const vec color = { 0.05f, 0.07f, 0.10f };
+    for (int k = 0; k < f->nest_count; k++) {
+        double low[3] = { 0, 0, 0 }, high[3] = { 0, 0, 0 };
+        int there = 1;
+        for (int a = 0; a < f->dimension; a++) {
+            low[a] = fmax(f->nests[k][0][a], f->box_min[a]);
+            high[a] = fmin(f->nests[k][1][a], f->box_max[a]);
+            there &= low[a] < high[a];
+        }
+        if (there) draw_edges(c, f->dimension, low, high, lift, 1.3f, color, false);
+    }
+}
+
 /* Through water, and in 2-D over all. */
 void view_draw_zones(canvas *c, const tobi_picture *f)
 {
     const vec color = { 0.45f, 0.13f, 0.02f };
     const double lift = f->dimension == 2 ? 4*f->radius : 0;
+    if (f->look == TOBI_LOOK_PARTICLES) draw_nests(c, f, lift);
     for (int k = 0; k < f->zone_count; k++)
         draw_edges(c, f->dimension, f->zones[k][0], f->zones[k][1], lift, 2, color, false);
     for (int64_t k = 0; k < f->edge_count; k++) {

@@ -174,12 +174,31 @@ static void limit_block(const grid *s, int64_t b)
         }
 }
 
+/* Likewise where the liquid of a nest goes on. Half a cell farther, so that smoothing leaves no groove. */
+static void limit_to_nests(const grid *s, int64_t b)
+{
+    static const double LAP = 0.5;      /* cells */
+    const tobi_picture *f = s->f;
+    float *node = s->node + b*BLOCK_NODES;
+    for (int z = 0; z < BLOCK_EDGE; z++)
+        for (int y = 0; y < BLOCK_EDGE; y++)
+            for (int x = 0; x < BLOCK_EDGE; x++, node++) {
+                const double p[3] = { s->low[0] + s->edge*(BLOCK_EDGE*s->block[b][0] + x),
+                                      s->low[1] + s->edge*(BLOCK_EDGE*s->block[b][1] + y),
+                                      s->low[2] + s->edge*(BLOCK_EDGE*s->block[b][2] + z) };
+                const double beyond = view_beyond_nests(f->nests, f->nest_count, s->nest, p);
+                const float most = s->level - 0.5f*(float)(beyond/s->edge - LAP);
+                *node = *node < most ? *node : most;
+            }
+}
+
 static void limit_blocks(const void *view, int64_t begin, int64_t end)
 {
     const grid *s = view;
     for (int64_t b = begin; b < end; b++) {
         limit_block(s, b);
         if (s->f->clip) limit_to_plane(s, b);
+        if (s->f->nest) limit_to_nests(s, b);
     }
 }
 
@@ -434,7 +453,7 @@ tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, cons
                              bool *around,
                              tobi_error *err)
 {
-    grid s = { .c = c, .f = r->f, .level = r->level };
+    grid s = { .c = c, .f = r->f, .level = r->level, .nest = r->nest };
     double low[3], high[3];
     vec *colors = NULL;
     bool enough = true;

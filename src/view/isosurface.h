@@ -13,6 +13,7 @@ typedef struct grid {
     double edge, low[3];                 /* m, of a cell; m, of the first node                   */
     float  wall[3][2];                   /* cells from the first node, of the domain             */
     float  reach;                        /* cells                                                */
+    int    nest;                         /* of the particles, see tobi_picture                   */
     float  level;                        /* of the sum, whose value inside is 1                  */
     int    size[3];                      /* blocks                                               */
     int32_t *at;                         /* of each place the block there, or -1                 */

@@ -256,6 +256,7 @@ static surface_request take_group(const surface_request *all, int64_t *begin)
     surface_request r = *all;
     r.row += *begin, r.count = end - *begin;
     r.radius = radius_of(f, r.row[0]);
+    r.nest = view_nest_of(f, r.row[0]);
     r.drop *= (float)r.radius;
     if (view_has_own(f, r.row[0])) r.scale = NULL;
     *begin = end;

@@ -147,6 +147,13 @@ static float cover_around(const plane *p, int x, int y)
     return 4/(REACH*REACH*3.14159265f)*sum;
 }
 
+/* Cells beyond where this liquid is shown. It goes on for one, so that no corner is missing between two. */
+static float beyond_nests(const plane *p, const double x[3])
+{
+    const tobi_picture *f = p->r->f;
+    return f->nest ? (float)(view_beyond_nests(f->nests, f->nest_count, p->r->nest, x)/p->edge) : -INFINITY;
+}
+
 /* Sums become 1 inside whatever wall or body is near; beyond walls and the clip plane, and in what is seen
    through, they fall through the level. */
 static void limit_nodes(plane *p)
@@ -168,6 +175,7 @@ static void limit_nodes(plane *p)
             *node *= per_particle/fmaxf(room, least_room);
             if (p->clear) most = fminf(most, level + 0.5f - p->clear[node_at(p, m, n)]);
             if (f->clip) most = fminf(most, level - 0.5f*(float)(view_beyond(f, x, 0.5*f->slice)/p->edge));
+            if (f->nest) most = fminf(most, level - 0.5f*(beyond_nests(p, x) - 1));
             *node = fminf(*node, most);
         }
 }
@@ -214,6 +222,8 @@ static bool add_cell(const plane *p, geometry *g, int x, int y)
     }
     /* Of two lines in a cell each begins where the region is left. */
     const int first = p->node[node_at(p, x, y)] >= p->r->level ? 0 : 1;
+    const double middle[3] = { p->low[0] + p->edge*(x + 0.5), p->low[1] + p->edge*(y + 0.5), 0 };
+    if (beyond_nests(p, middle) > 0) edges = 0;      /* the other has the outline */
     for (int k = 0; k < edges; k += 2) {
         vec from = g->place[edge[(first + k)%edges]], to = g->place[edge[(first + k + 1)%edges]];
         from.z = to.z = p->behind;

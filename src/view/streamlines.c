@@ -223,7 +223,7 @@ static bool is_shown(const tracer *t, int64_t i)
     const double *x = t->f->positions[i], *v = t->f->flow[i];
     double sum = 0;
     for (int a = 0; a < t->dimension; a++) sum += fabs(x[a]) + fabs(v[a]);
-    return sum < INFINITY && !(t->f->opaque && t->f->opaque[i]);
+    return sum < INFINITY && !(t->f->opaque && t->f->opaque[i]) && view_is_in_nest(t->f, i);
 }
 
 static bool sort_particles(tracer *t)

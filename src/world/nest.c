@@ -11,12 +11,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Support radii: how far the rim reaches. */
-static const double RIM = 2;
 /* Largest over least density: pressures that are given beside a light fluid are too much for the solve. */
 static const double DENSITY_RATIO = 2;
 /* Outer spacings: the shortest side of a box. */
 static const double LEAST = 4;
+
+double tobi_nest_rim(const tobi_system *s)
+{
+    static const double RIM = 2;      /* support radii */
+    return RIM*s->smoothing.h;
+}
 
 int tobi_nest_takes(const tobi_system *s, const double x[3])
 {
@@ -143,8 +147,7 @@ static tobi_status check_openings(const tobi_world *outer, const tobi_nest *n, c
     return TOBI_OK;
 }
 
-/* m, from the lower corner of the domain: the middle of a body now. */
-static void find_middle(const tobi_simulation *outer, int body, double middle[3])
+void tobi_nest_middle(const tobi_simulation *outer, int body, double middle[3])
 {
     const tobi_body *b = &outer->bodies[body];
     double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
@@ -171,7 +174,7 @@ static tobi_status find_body(const tobi_world *outer, const tobi_nest_def *def, 
 {
     char why[120];
     n->body = def->follow ? tobi_world_find_body(outer, def->follow) : -1;
-    if (n->body >= 0) find_middle(&outer->sim, n->body, n->middle);
+    if (n->body >= 0) tobi_nest_middle(&outer->sim, n->body, n->middle);
     if (n->body >= 0 || !def->follow) return TOBI_OK;
     snprintf(why, sizeof why, tr("there is no body '%.60s' to follow"), def->follow);
     return refuse("follow", def, why, err);
@@ -189,7 +192,7 @@ tobi_status tobi_world_nest(tobi_world *w, tobi_world *outer, const tobi_nest_de
     TOBI_TRY(check_worlds(w, outer, def, err));
     TOBI_TRY(check_box(outer, def, err));
     const tobi_box *box = &w->system[0].box;
-    tobi_nest n = { .outer = &outer->system[0], .rim = RIM*w->system[0].smoothing.h };
+    tobi_nest n = { .outer = &outer->system[0], .rim = tobi_nest_rim(&w->system[0]) };
     for (int a = 0; a < 3; a++) {
         n.start[0][a] = def->box_min[a] - box->lower[a];
         n.start[1][a] = def->box_max[a] - box->lower[a];
@@ -241,7 +244,7 @@ void tobi_nest_follow(tobi_world *w)
     tobi_nest *n = &w->sim.nest;
     double middle[3], way[3];
     if (!n->outer || n->body < 0) return;
-    find_middle(n->outer->sim, n->body, middle);
+    tobi_nest_middle(n->outer->sim, n->body, middle);
     vec3_sub(way, middle, n->middle);
     place(n, &w->system[0].box, way);
 }

@@ -3,6 +3,10 @@
 #include "io/store.h"
 #include "world/world.h"
 
+/* m: how far the rim of a nest that is this system reaches. */
+double tobi_nest_rim(const tobi_system *s);
+/* m, from the lower corner of the domain: the middle of a body now. */
+void tobi_nest_middle(const tobi_simulation *outer, int body, double middle[3]);
 /* Whether a region of the system begins there: everywhere but outside of a nest. */
 int tobi_nest_takes(const tobi_system *s, const double x[3]);
 /* How many particles a nest may begin with, of so many that its regions have in the whole domain. */

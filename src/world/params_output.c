@@ -101,6 +101,8 @@ const tobi_param_table tobi_probe_table = {
       .doc = "Draw ticks with numbers along edges of the domain." }, \
     { .key = "picture.transparent", BOOL, AT(type, in transparent), \
       .doc = "Leave the background of the pictures transparent." }, \
+    { .key = "picture.nests", BOOL, AT(type, in nests), .def = { 1 }, \
+      .doc = "Draw in the box of each nest its liquid instead of the scene's." }, \
     { .key = "picture.foam", BOOL, AT(type, in foam), .def = { 1 }, \
       .doc = "Draw spray, foam and bubbles in pictures made after tobiuo foam." },
 

@@ -150,6 +150,23 @@ for results in whole_isph whole_isph/nests/end; do
     expect 0 "" foam $results
     expect 1 "is a run in 2-D, which has no surface" surface $results
 done
+# Pictures show nests in their boxes, of which one goes along with the buoy, or the scene alone.
+expect 0 "" picture whole_isph --output 3 --out both.png
+check "nothing is told" test ! -s err.txt
+expect 0 "" picture whole_isph --output 3 --out alone.png --set output.picture.nests=false
+check "nests change the picture" test "$(cmp -s both.png alone.png; echo $?)" = 1
+cp -r whole_isph lost
+rm -r lost/nests/end lost/surfaces
+expect 0 "note: nest 'end' is not drawn at 0.3 s: " picture lost --out lost.png
+expect 0 "note: nest 'buoy' is not drawn at 0.3 s: the output has no surface of the body" picture lost --out lost.png
+expect 0 "" picture lost --out scene.png --set output.picture.nests=false
+check "the scene alone is drawn instead" cmp lost.png scene.png
+cp -r whole_isph late
+sed -i '/fluid_000003/d' late/nests/end/all.pvd
+expect 0 "note: nest 'end' is not drawn at 0.3 s: it has no results of that time" picture late --out late.png
+expect 0 "" picture late --output 2 --out late.png
+check "but earlier" test ! -s err.txt
+
 # In a nest a body with a program goes as in the scene, and its scene is one that can be read.
 echo 'function control(t, body) return { force = { 5, 0, 0 } } end' > push.lua
 expect 0 "" run tank.json --out pushed --quiet --until 0.1 --set bodies.buoy.dynamics=controlled \
