@@ -251,8 +251,11 @@ char *list_gaps(const char *dir, const char *view, const pictures *p);
 int link_pictures(const char *dir, const char *view, const pictures *p, char *folder);
 /* Those of the folder, and it. */
 void clear_pictures(const char *folder, const char *view);
+/* resume.c: RUN of RUN/nests/NAME, if that has such a nest; else NULL. The caller frees it. */
+char *find_outer(const char *dir);
 /* nest_pictures.c: results of the nests of the run in dir; both outlive them. Ends without memory. Adds what
-   they have at its time to a moment of the run, and says what they lack. NULL is fine. */
+   they have at its time to a moment of the run, and says what they lack. Of a run that is a nest itself a
+   moment gets its box. NULL is fine. */
 typedef struct nest_results nest_results;
 nest_results *open_nests(const tobi_scene *scene, const char *dir);
 void add_nests(nest_results *nests, const tobi_looks *looks, tobi_moment *moment);

@@ -5,9 +5,12 @@
 #include "tobiuo/drawing.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct nest_results {
     const tobi_scene *scene;
+    tobi_scene *outer;                      /* owned: of the run around, if this is a nest; NULL */
+    const tobi_nest_def *self;              /* of that, or NULL */
     const char *dir;
     int count, told[TOBI_NEST_LIMIT];
     tobi_results *of[TOBI_NEST_LIMIT];      /* NULL: none yet */
@@ -24,6 +27,21 @@ static tobi_status open_one(nest_results *n, int k, tobi_error *err)
     return status;
 }
 
+/* For the folder of a nest: what it is in the scene of the run around it. */
+static void find_self(nest_results *n)
+{
+    char *run = find_outer(n->dir), *own = realpath(n->dir, NULL), *path = NULL;
+    const char *name = own ? strrchr(own, '/') : NULL;
+    const tobi_nest_def *def;
+    if (run && name && asprintf(&path, "%s/resolved.json", run) >= 0 &&
+        tobi_scene_load(path, NULL, &n->outer, NULL, NULL) == TOBI_OK)
+        for (int k = 0; (def = tobi_scene_nest_def(n->outer, k)) != NULL; k++)
+            if (strcmp(def->name, name + 1) == 0) n->self = def;
+    free(path);
+    free(own);
+    free(run);
+}
+
 nest_results *open_nests(const tobi_scene *scene, const char *dir)
 {
     nest_results *n = calloc(1, sizeof *n);
@@ -31,12 +49,14 @@ nest_results *open_nests(const tobi_scene *scene, const char *dir)
     n->scene = scene;
     n->dir = dir;
     while (n->count < TOBI_NEST_LIMIT && tobi_scene_nest_def(scene, n->count)) n->count++;
+    if (n->count == 0) find_self(n);
     return n;
 }
 
 void close_nests(nest_results *n)
 {
     for (int k = 0; n && k < n->count; k++) tobi_results_free(n->of[k]);
+    if (n) tobi_scene_free(n->outer);
     free(n);
 }
 
@@ -75,7 +95,17 @@ static void add_one(nest_results *n, int k, const tobi_looks *looks, tobi_moment
     if (status != TOBI_OK) tell(n, k, m->time, err.text);
 }
 
+/* The rim of a nest is left out of its own pictures. */
+static void add_self(const nest_results *n, const tobi_looks *looks, tobi_moment *m)
+{
+    tobi_looks own = *looks;
+    own.is_nest = 1;
+    m->nest_count = tobi_nest_box(&own, n->self, m, m->nests[0]);
+    m->nest_spacing[0] = looks->spacing;
+}
+
 void add_nests(nest_results *n, const tobi_looks *looks, tobi_moment *m)
 {
+    if (n && n->self) add_self(n, looks, m);
     for (int k = 0; n && k < n->count; k++) add_one(n, k, looks, m);
 }

@@ -83,8 +83,7 @@ static int has_nest(const char *path, const char *name)
     return found;
 }
 
-/* RUN/nests/NAME becomes RUN, if that has such a nest; else NULL. The caller frees it. */
-static char *find_outer(const char *dir)
+char *find_outer(const char *dir)
 {
     char *real = realpath(dir, NULL), *name = real ? strrchr(real, '/') : NULL, *path = NULL;
     if (name) *name++ = '\0';

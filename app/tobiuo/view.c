@@ -90,7 +90,9 @@ int drive_with_window(tobi_world *world, tobi_run *run, const drive_options *o, 
     window_def d = make_window(scene, &looks, o->dir, tobi_scene_name(scene));
     d.live = s.live;
     d.keys = keys;
+    d.nests = open_nests(scene, o->dir);
     if (pthread_create(&thread, NULL, take_steps, &s) != 0) {
+        close_nests(d.nests);
         live_free(s.live);
         tobi_looks_free(&looks);
         complain("there is no window: no thread for it");
@@ -98,6 +100,7 @@ int drive_with_window(tobi_world *world, tobi_run *run, const drive_options *o, 
     }
     if (window_show(&d) != 0) live_leave(s.live, LIVE_GOES_ON);
     pthread_join(thread, NULL);
+    close_nests(d.nests);
     live_free(s.live);
     tobi_looks_free(&looks);
     return s.code;
@@ -126,10 +129,12 @@ int tobiuo_view(int argc, char **argv)
         return code;
     }
     window_def d = make_window(scene, &looks, o.dir, o.dir);
+    d.nests = open_nests(scene, o.dir);
     d.keys = o.keys;
     d.width = o.width;
     d.height = o.height;
     code = window_show(&d) == 0 ? 0 : EXIT_ERROR;
+    close_nests(d.nests);
     tobi_looks_free(&looks);
     tobi_scene_free(scene);
     return code;

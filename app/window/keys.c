@@ -42,6 +42,12 @@ void time_line_place(const viewer *v, int *x, int *y, int *width, int *height)
 
 /* --- moments --- */
 
+/* Of the liquids of the scene and its nests that which is drawn there. */
+static int is_drawn(const viewer *v, const tobi_moment *m, int64_t i)
+{
+    return v->look.alone ? !m->nest || !m->nest[i] : tobi_moment_shows(m, i);
+}
+
 /* The range of the field grows with what was seen of it, so that colours keep their meaning. */
 static void widen_range(viewer *v, int anew)
 {
@@ -51,7 +57,7 @@ static void widen_range(viewer *v, int anew)
     else if (v->flat) v->look.high = v->look.low;
     for (int64_t i = 0; f && i < m->count; i++) {
         const double value = tobi_drawing_value(&v->def.looks, f, i);
-        if (!isfinite(value)) continue;
+        if (!isfinite(value) || !is_drawn(v, m, i)) continue;
         v->look.low = fmin(v->look.low, value);
         v->look.high = fmax(v->look.high, value);
     }
@@ -86,6 +92,7 @@ void viewer_show(viewer *v, int64_t output)
     }
     if (tobi_results_read_foam(v->results, v->shown, &m, &err) != TOBI_OK)
         viewer_note(v, "%.280s", err.text);
+    add_nests(v->def.nests, &v->def.looks, &m);
     viewer_adopt(v, moment_share(&m));
 }
 
@@ -161,6 +168,12 @@ static void move_clip(viewer *v, double share)
 static void do_clip_back(viewer *v) { move_clip(v, -0.025); }
 static void do_clip_on(viewer *v) { move_clip(v, 0.025); }
 
+static void do_nests(viewer *v)
+{
+    v->look.alone = !v->look.alone;
+    v->dirty = 1;
+}
+
 static void do_pause(viewer *v)
 {
     if (!v->def.live) {
@@ -232,8 +245,9 @@ const key_row key_rows[] = {
     { 'f', "f F", "next field, field before", do_field }, { 'F', NULL, NULL, do_field_back },
     { 'r', "r", "colours from least to most of now", do_range },
     { 'c', "c", "clip plane: x, y, z, none", do_clip },
-    { '[', "[ ]", "move the clip plane", do_clip_back }, { ']', NULL, NULL, do_clip_on },
-    { 'C', "C", "its other side", do_clip_side },
+    { '[', "[ ] C", "move it, its other side", do_clip_back }, { ']', NULL, NULL, do_clip_on },
+    { 'C', NULL, NULL, do_clip_side },
+    { 'o', "o", "nests, or the scene alone", do_nests },
     { ' ', "space", "play, or pause a run", do_pause },
     { 'n', "n", "next output, or one step of a run", do_step },
     { 'b', "b", "output before", do_back },
@@ -259,7 +273,7 @@ static int64_t find_particle(const viewer *v, double x, double y)
     const tobi_moment_field *material = m ? find_field(m, "material") : NULL;
     for (int64_t i = 0; m && i < m->count; i++) {
         double pixel[3], scale;
-        if (is_clipped(&v->look, m->positions[i])) continue;
+        if (is_clipped(&v->look, m->positions[i]) || !is_drawn(v, m, i)) continue;
         if (tobi_looks_hides(&v->def.looks, m->time, m->positions[i])) continue;
         if (!camera_project(&v->look.camera, v->width, v->height, m->positions[i], pixel, &scale)) continue;
         const double own = tobi_looks_radius(&v->def.looks, material ? (int)material->values[i] : 0);
@@ -276,9 +290,10 @@ static void pick(viewer *v, double x, double y)
 {
     const int64_t i = find_particle(v, x, y);
     if (i < 0) return;
-    const tobi_moment_field *id = find_field(moment_of(v->moment), "particle_id");
+    const tobi_moment *m = moment_of(v->moment);
+    const tobi_moment_field *id = find_field(m, "particle_id");
     v->picks[1] = v->picks[0];
-    v->picks[0] = id ? (int64_t)id->values[i] : i;
+    v->picks[0] = id ? (int64_t)id->values[i] + (m->nest ? m->nest[i]*NEST_PICK : 0) : i;
 }
 
 static void press(viewer *v, const event *e)

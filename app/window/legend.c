@@ -48,7 +48,7 @@ static int64_t row_of(const tobi_moment *m, int64_t id)
     const tobi_moment_field *f = find_field(m, "particle_id");
     if (!f) return id < m->count ? id : -1;
     for (int64_t i = 0; i < m->count; i++)
-        if ((int64_t)f->values[i] == id) return i;
+        if ((int64_t)f->values[i] + (m->nest ? m->nest[i]*NEST_PICK : 0) == id) return i;
     return -1;
 }
 
@@ -194,7 +194,7 @@ static int write_particle(const viewer *v, const canvas *c, const tobi_moment *m
 {
     char text[200];
     const double *p = m->positions[i];
-    snprintf(text, sizeof text, "%d  particle %lld", number + 1, (long long)v->picks[number]);
+    snprintf(text, sizeof text, "%d  particle %lld", number + 1, (long long)(v->picks[number]%NEST_PICK));
     line = write_row(v, c, line, text);
     snprintf(text, sizeof text, "position %.5g %.5g %.5g m", p[0], p[1], p[2]);
     line = write_row(v, c, line, text);

@@ -2,6 +2,7 @@
    some milliseconds for a million numbers, at most once per picture. */
 #define _GNU_SOURCE 1
 #include "live.h"
+#include "tobiuo/drawing.h"
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -81,10 +82,9 @@ static void copy_surface(tobi_world *world, int body, tobi_moment *m)
     memcpy(s->triangles, triangles, (size_t)s->triangle_count*sizeof *s->triangles);
 }
 
-static tobi_moment copy_world(tobi_world *world)
+static tobi_moment copy_particles(tobi_world *world)
 {
     tobi_moment m = { .time = tobi_world_time(world), .count = tobi_world_count(world, TOBI_FLUID) };
-    const int bodies = tobi_world_body_count(world);
     const char *name;
     int components;
     m.positions = malloc(((size_t)m.count + 1)*sizeof *m.positions);
@@ -93,6 +93,27 @@ static tobi_moment copy_world(tobi_world *world)
         m.count = 0;
     for (int k = 0; (name = tobi_world_field_name(k, &components, NULL)); k++)
         if (is_wanted_field(name, components)) copy_field(world, name, components, &m);
+    return m;
+}
+
+/* Nests that have come to its time. One that cannot be copied is left out. */
+static void copy_nests(const tobi_world *world, tobi_moment *m)
+{
+    tobi_world *nest;
+    double box[2][3], spacing;
+    for (int k = 0; (nest = tobi_world_nest_at(world, k)) != NULL; k++) {
+        if (tobi_world_time(nest) != m->time || !tobi_world_nest_box(nest, box, &spacing)) continue;
+        tobi_moment own = copy_particles(nest);
+        tobi_moment_add_nest(m, &own, (const double (*)[3])box, spacing, NULL);
+        tobi_moment_free(&own);
+    }
+}
+
+static tobi_moment copy_world(tobi_world *world)
+{
+    const int bodies = tobi_world_body_count(world);
+    tobi_moment m = copy_particles(world);
+    copy_nests(world, &m);
     m.surfaces = calloc((size_t)bodies + 1, sizeof *m.surfaces);
     for (int b = 0; m.surfaces && b < bodies; b++) copy_surface(world, b, &m);
     return m;

@@ -114,7 +114,8 @@ static void paint(const tobi_looks *s, const tobi_moment *m, painting *out)
     const double begun = clock_seconds();
     const look *l = &out->look;
     const tobi_view_def view = { .width = l->width, .height = l->height, .samples = 1, .foam = 1,
-                                 .field = *l->field ? l->field : NULL, .min = l->low, .max = l->high };
+                                 .nests = !l->alone, .field = *l->field ? l->field : NULL, .min = l->low,
+                                 .max = l->high };
     tobi_drawing *d = NULL;
     tobi_error err = { .text = "out of memory" };
     out->rgb = malloc((size_t)l->width*(size_t)l->height*3);

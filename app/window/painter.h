@@ -21,6 +21,7 @@ typedef struct look {
     int clip_axis;                      /* -1: none                                                 */
     int clip_below;                     /* 1: what lies below the plane is hidden, 0: above         */
     double clip;                        /* m                                                        */
+    int alone;                          /* 1: the scene's liquid in the boxes of nests, too         */
     int width, height;
 } look;
 

@@ -7,6 +7,8 @@
 
 enum { PICKS = 2, GRAPH_CURVES = 3 };
 
+#define NEST_PICK ((int64_t)1 << 48)
+
 /* Curves of the run's tables, of one body or of the whole. */
 typedef struct graph {
     char title[160];
@@ -31,7 +33,7 @@ typedef struct viewer {
     double play_at;                     /* s of the wall clock, of the next output                */
     int graph_number;                   /* -1: none                                               */
     graph graph;
-    int64_t picks[PICKS];               /* particle ids, or -1                                    */
+    int64_t picks[PICKS];               /* particle ids, of a nest + its number NEST_PICK; or -1  */
     painting painting;                  /* the last picture                                       */
     int drag;                           /* 0 none, 1 orbit, 2 pan, 3 time line                    */
     double drag_x, drag_y, moved;

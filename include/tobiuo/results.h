@@ -51,7 +51,8 @@ typedef struct tobi_moment {
     double  nests[TOBI_NEST_LIMIT][2][3];      /* m, corners of their boxes, infinite where a side of the
                                           domain is nearer than the rim is wide                   */
     double  nest_spacing[TOBI_NEST_LIMIT];     /* m                                               */
-    uint8_t *nest;                     /* of each particle: 1 + its nest, 0: it is of the scene; or NULL */
+    uint8_t *nest;                     /* of each particle: 1 + its nest, 0: it is of the scene; NULL: all
+                                          are of the first nest, if there is one                  */
 } tobi_moment;
 
 /* Opens the results in dir. TOBI_NOT_FOUND: there is no run; TOBI_DAMAGED: its list is no list. */

@@ -144,6 +144,11 @@ TOBI_API tobi_status tobi_world_add_note(tobi_world *world, const char *text, to
    outlive it. TOBI_INVALID, TOBI_UNSUPPORTED in words (docs/decisions/0157-nests.md). */
 TOBI_API tobi_status tobi_world_nest(tobi_world *world, tobi_world *outer, const tobi_nest_def *def,
                                      tobi_error *err);
+/* The nests of a world by number; NULL past the end. */
+TOBI_API tobi_world *tobi_world_nest_at(const tobi_world *outer, int index);
+/* 1 for a nest: where its box is now, m, infinite where a side of the domain is nearer than the rim is wide,
+   and its spacing, m; else 0. */
+TOBI_API int tobi_world_nest_box(const tobi_world *nest, double box[2][3], double *spacing);
 /* Whether a name fits a nest, and the folder of its results: letters, digits, _ and -, at most 63. */
 TOBI_API int tobi_nest_name_fits(const char *name);
 /* One of the steps that tobi_world_advance takes to time t, s, which the last one hits exactly: the nests of

@@ -49,14 +49,14 @@ tobi_status tobi_frames_prepare(tobi_run *run, tobi_error *err)
 }
 
 /* A field of the moment, from the world. */
-static tobi_status add_field(tobi_run *run, const char *name, int components, tobi_moment *m, tobi_error *err)
+static tobi_status add_field(tobi_world *w, const char *name, int components, tobi_moment *m, tobi_error *err)
 {
     for (int k = 0; k < m->field_count; k++)
         if (strcmp(m->fields[k].name, name) == 0) return TOBI_OK;
     tobi_moment_field f = { strdup(name), components,
                             malloc((size_t)m->count*(size_t)components*sizeof(double) + 1) };
     tobi_status status = f.name && f.values
-        ? tobi_world_read(run->world, TOBI_FLUID, name, f.values, m->count*components, err)
+        ? tobi_world_read(w, TOBI_FLUID, name, f.values, m->count*components, err)
         : tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     if (status == TOBI_OK) {
         m->fields[m->field_count++] = f;
@@ -68,9 +68,8 @@ static tobi_status add_field(tobi_run *run, const char *name, int components, to
 }
 
 /* Of each particle its fluid or solid, by its number among those of all systems. */
-static tobi_status add_materials(tobi_run *run, tobi_moment *m, tobi_error *err)
+static tobi_status add_materials(const tobi_world *w, tobi_moment *m, tobi_error *err)
 {
-    const tobi_world *w = run->world;
     tobi_moment_field f = { strdup("material"), 1, malloc((size_t)m->count*sizeof(double) + 1) };
     int64_t i = 0;
     if (!f.name || !f.values) {
@@ -87,22 +86,76 @@ static tobi_status add_materials(tobi_run *run, tobi_moment *m, tobi_error *err)
     return TOBI_OK;
 }
 
-static tobi_status take_fields(tobi_run *run, tobi_moment *m, tobi_error *err)
+static tobi_status take_fields(const tobi_run *run, tobi_world *w, tobi_moment *m, tobi_error *err)
 {
-    const tobi_world *w = run->world;
     m->fields = calloc(9 + (size_t)run->view_count, sizeof *m->fields);
     if (!m->fields) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
-    TOBI_TRY(add_field(run, "velocity", 3, m, err));
-    TOBI_TRY(add_materials(run, m, err));
-    if (tobi_world_solids(w)) TOBI_TRY(add_field(run, "part", 1, m, err));
-    if (w->solid_images > 0) TOBI_TRY(add_field(run, "rest_position", 3, m, err));
+    TOBI_TRY(add_field(w, "velocity", 3, m, err));
+    TOBI_TRY(add_materials(w, m, err));
+    if (tobi_world_solids(w)) TOBI_TRY(add_field(w, "part", 1, m, err));
+    if (w->solid_images > 0) TOBI_TRY(add_field(w, "rest_position", 3, m, err));
     if (tobi_record_has_pieces(w)) {
-        TOBI_TRY(add_field(run, "piece", 1, m, err));
-        TOBI_TRY(add_field(run, "particle_id", 1, m, err));
+        TOBI_TRY(add_field(w, "piece", 1, m, err));
+        TOBI_TRY(add_field(w, "particle_id", 1, m, err));
     }
     for (int k = 0; k < run->view_count; k++) {
         const tobi_record_field *f = &run->view[k].field;
-        if (f->name) TOBI_TRY(add_field(run, f->name, f->components, m, err));
+        if (f->name) TOBI_TRY(add_field(w, f->name, f->components, m, err));
+    }
+    return TOBI_OK;
+}
+
+static int wants_nests(const tobi_run *run)
+{
+    int wanted = 0;
+    for (int k = 0; k < run->view_count; k++) wanted |= run->view[k].def.nests;
+    return wanted;
+}
+
+/* The positions are the snapshot's until there are others behind them: from then on the moment owns them. */
+static tobi_status own_positions(tobi_moment *m, tobi_error *err)
+{
+    if (m->nest) return TOBI_OK;
+    const size_t n = (size_t)m->count;
+    double (*place)[3] = malloc(n*sizeof *place + 1);
+    m->nest = calloc(n + 1, 1);
+    if (!place || !m->nest) {
+        free(place);
+        free(m->nest);
+        m->nest = NULL;
+        return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    }
+    if (n > 0) memcpy(place, m->positions, n*sizeof *place);
+    m->positions = place;
+    return TOBI_OK;
+}
+
+static tobi_status read_nest(const tobi_run *run, tobi_world *nest, tobi_moment *own, tobi_error *err)
+{
+    own->count = tobi_world_count(nest, TOBI_FLUID);
+    own->positions = malloc((size_t)own->count*sizeof *own->positions + 1);
+    if (!own->positions) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    TOBI_TRY(tobi_world_read(nest, TOBI_FLUID, "position", &own->positions[0][0], 3*own->count, err));
+    return take_fields(run, nest, own, err);
+}
+
+/* Liquid of the nests that have come to the same time. A nest itself shows what is in its box. */
+static tobi_status take_nests(const tobi_run *run, tobi_moment *m, tobi_error *err)
+{
+    double box[2][3], spacing;
+    if (!wants_nests(run)) return TOBI_OK;
+    if (tobi_world_nest_box(run->world, m->nests[0], &m->nest_spacing[0])) m->nest_count = 1;
+    for (int k = 0; k < TOBI_NEST_LIMIT; k++) {
+        tobi_world *nest = tobi_world_nest_at(run->world, k);
+        if (!nest || !nest->started || !tobi_record_reaches(tobi_world_time(nest), m->time)) continue;
+        if (!tobi_world_nest_box(nest, box, &spacing)) continue;
+        tobi_moment own = { 0 };
+        tobi_status status = own_positions(m, err);
+        if (status == TOBI_OK) status = read_nest(run, nest, &own, err);
+        if (status == TOBI_OK)
+            status = tobi_moment_add_nest(m, &own, (const double (*)[3])box, spacing, err);
+        tobi_moment_free(&own);
+        TOBI_TRY(status);
     }
     return TOBI_OK;
 }
@@ -169,7 +222,8 @@ tobi_status tobi_frames_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
     m->time = tobi_world_time(run->world);
     m->count = snapshot->set[TOBI_SET_FLUID].count;
     m->positions = snapshot->set[TOBI_SET_FLUID].position;
-    TOBI_TRY(take_fields(run, m, err));
+    TOBI_TRY(take_fields(run, run->world, m, err));
+    TOBI_TRY(take_nests(run, m, err));
     TOBI_TRY(list_surfaces(run, snapshot, m, err));
     TOBI_TRY(take_tracks(run, m, err));
     for (int k = 0; k < run->view_count; k++) {
@@ -187,6 +241,8 @@ void tobi_frames_free(tobi_snapshot *s)
         free(s->moment.fields[k].values);
     }
     for (int k = 0; k < s->moment.track_count; k++) free(s->moment.tracks[k].points);
+    if (s->moment.nest) free(s->moment.positions);
+    free(s->moment.nest);
     free(s->moment.tracks);
     free(s->moment.fields);
     free(s->moment.surfaces);

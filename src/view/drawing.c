@@ -169,7 +169,7 @@ static void take_skin(tobi_drawing *d, int64_t i, int64_t to, int material)
 static tobi_status make_arrays(tobi_drawing *d, int arrows, tobi_error *err)
 {
     const size_t n = (size_t)d->moment->count + 1;
-    const int nests = d->view->nests && d->moment->nest && d->moment->nest_count > 0;
+    const int nests = d->view->nests && d->moment->nest_count > 0;
     const int differ = tobi_looks_differ(d->looks) || nests;
     const int own = d->view->field_of && d->looks->material_count > 0;
     d->positions = malloc(n*sizeof *d->positions);
@@ -197,12 +197,14 @@ static void take_own_color(tobi_drawing *d, int64_t to, int color)
 /* m: how far the surface around a particle may reach beyond the place that it is shown in, in spacings. */
 static const double MARGIN = 6;
 
+static int nest_of(const tobi_moment *m, int64_t i) { return m->nest ? m->nest[i] : m->nest_count > 0; }
+
 /* Without nests what is theirs is left out, with them what surfaces do not need. */
 static int is_taken(const tobi_drawing *d, int64_t i)
 {
     const tobi_moment *m = d->moment;
-    const int nest = m->nest ? m->nest[i] : 0;
-    if (!d->nest) return nest == 0;
+    const int nest = nest_of(m, i);
+    if (!d->nest) return nest == 0 || !m->nest;
     const double spacing = nest ? m->nest_spacing[nest - 1] : d->looks->spacing;
     const double most = d->view->look == TOBI_LOOK_PARTICLES ? 0 : MARGIN*spacing;
     return view_beyond_nests((const double (*)[2][3])m->nests, m->nest_count, nest, m->positions[i]) <= most;
@@ -211,7 +213,7 @@ static int is_taken(const tobi_drawing *d, int64_t i)
 /* Its own size; liquids of different nests have different surfaces. */
 static void take_nest(tobi_drawing *d, int64_t i, int64_t to)
 {
-    const int nest = d->moment->nest[i];
+    const int nest = nest_of(d->moment, i);
     d->nest[to] = (uint8_t)nest;
     if (nest) d->radii[to] = 0.5*d->moment->nest_spacing[nest - 1];
     d->group[to] -= nest*(d->looks->material_count + 1);

@@ -26,8 +26,8 @@ double view_beyond_nests(const double (*boxes)[2][3], int count, int nest, const
 int tobi_moment_shows(const tobi_moment *m, int64_t i)
 {
     if (!m || i < 0 || i >= m->count) return 0;
-    return !m->nest || view_beyond_nests((const double (*)[2][3])m->nests, m->nest_count, m->nest[i],
-                                         m->positions[i]) <= 0;
+    const int nest = m->nest ? m->nest[i] : m->nest_count > 0;
+    return view_beyond_nests((const double (*)[2][3])m->nests, m->nest_count, nest, m->positions[i]) <= 0;
 }
 
 /* Of the box around the surface of a body; false: the moment has none. */

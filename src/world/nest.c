@@ -203,6 +203,7 @@ tobi_status tobi_world_nest(tobi_world *w, tobi_world *outer, const tobi_nest_de
     TOBI_TRY(check_openings(outer, &n, def, err));
     w->sim.nest = n;
     w->outer = outer;
+    tobi_nest_join(w);
     outer->sim.has_nests = 1;
     w->feeds = def->feedback;
     return TOBI_OK;

@@ -7,6 +7,9 @@
 double tobi_nest_rim(const tobi_system *s);
 /* m, from the lower corner of the domain: the middle of a body now. */
 void tobi_nest_middle(const tobi_simulation *outer, int body, double middle[3]);
+/* nest_list.c: w becomes the last of the nests of its outer world, or none of them. */
+void tobi_nest_join(tobi_world *w);
+void tobi_nest_leave(tobi_world *w);
 /* Whether a region of the system begins there: everywhere but outside of a nest. */
 int tobi_nest_takes(const tobi_system *s, const double x[3]);
 /* How many particles a nest may begin with, of so many that its regions have in the whole domain. */

@@ -12,6 +12,7 @@
 #include "world/limits.h"
 #include "world/motors.h"
 #include "world/names.h"
+#include "world/nest.h"
 #include "world/note_pieces.h"
 #include "world/openings.h"
 #include "world/scalars.h"
@@ -85,6 +86,7 @@ void tobi_world_destroy(tobi_world *w)
     if (!w) return;
     assert(w->alive == TOBI_ALIVE);
     w->alive = 0;
+    tobi_nest_leave(w);
     for (int k = 0; k < w->system_count; k++) tobi_world_free_system(&w->system[k]);
     tobi_rigid_free(w->dynamics);
     tobi_world_free_drive(w);

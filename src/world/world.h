@@ -39,6 +39,7 @@ struct tobi_world {
     int64_t *chosen_block;         /* owned: their number in each block of rows                    */
     int64_t chosen_room, chosen_blocks;
     struct tobi_world *outer;      /* of a nest: whose liquid surrounds it; NULL                    */
+    struct tobi_world *first_nest, *next_nest;      /* its own; of a nest: the next of the same world */
     int feeds;                     /* 1: that takes the nest's velocity                                */
     uint8_t *seen;                 /* owned: of outer particles by id, 1: in a nest; NULL: it is none  */
     int64_t seen_room;

@@ -126,6 +126,19 @@ mv live/window_1.png live_1.png
 mv live/window_2.png live_2.png
 differ picture live_1.png live_2.png "foam in the window of a run"
 
+# Nests are seen in their boxes, in the window of a run too, or the scene alone.
+cat > nested.json <<'END'
+{ "method": "isph", "dimension": 2, "domain": { "min": [0, 0], "max": [1, 1] }, "spacing": 0.05, "end_time": 0.02,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [0.7, 0.6] } } ] } ],
+  "nests": [ { "name": "end", "box": { "min": [0.5, 0], "max": [1, 1] }, "refinement": 4 } ],
+  "output": { "interval": 0.01, "picture": { "look": "particles" } } }
+END
+"$program" run nested.json --out nested --quiet > out.txt 2> err.txt
+timeout 60 "$program" view nested --size 800x450 --keys "fsosq" > out.txt 2> err.txt
+mv nested/window_1.png nested_1.png
+mv nested/window_2.png nested_2.png
+differ picture nested_1.png nested_2.png "o"
+
 look keys "shshsfsFs+s-sns>s<sb0sq"
 differ help,-line keys_1.png keys_2.png "h"
 differ $all keys_1.png keys_3.png "h again"

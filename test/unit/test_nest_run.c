@@ -4,6 +4,7 @@
 #include "nest_rig.h"
 #include "record_rig.h"
 #include <dirent.h>
+#include <math.h>
 #include <sys/resource.h>
 #include <signal.h>
 
@@ -40,6 +41,24 @@ static tobi_status record(nest_rig *a, const char *dir, int how, tobi_error *err
 static void step_to(nest_rig *a, double t)
 {
     while (!tobi_run_done(a->run, t)) OK(tobi_run_step(a->run, t, NULL, &err));
+}
+
+static void a_world_knows_its_nests(void **state)
+{
+    (void)state;
+    nest_rig a = make();
+    double box[2][3], spacing;
+    for (int k = 0; k < 2; k++)
+        assert_ptr_equal(tobi_world_nest_at(a.world, k), tobi_nests_world(a.nests, k, NULL));
+    assert_null(tobi_world_nest_at(a.world, 2));
+    assert_null(tobi_world_nest_at(a.world, -1));
+    assert_int_equal(tobi_world_nest_box(a.world, box, &spacing), 0);
+    assert_int_equal(tobi_world_nest_box(tobi_world_nest_at(a.world, 1), box, &spacing), 1);
+    assert_true(fabs(box[0][0] - 0.3) < 1e-12 && isinf(box[1][0]) && fabs(spacing - 0.01) < 1e-12);
+    tobi_nests_free(a.nests);
+    a.nests = NULL;
+    assert_null(tobi_world_nest_at(a.world, 0));
+    nest_rig_drop(&a);
 }
 
 /* A run to 0.04 s with checkpoints at 0.02 and 0.04. */
@@ -297,6 +316,7 @@ static int leave(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_world_knows_its_nests),
         cmocka_unit_test(checkpoints_belong_together), cmocka_unit_test(what_is_refused_costs_nothing),
         cmocka_unit_test(a_failure_has_the_name_of_the_nest), cmocka_unit_test(trouble_of_nests_is_told),
         cmocka_unit_test(one_nest_that_cannot_end),

@@ -1,6 +1,7 @@
 /* Pictures of a scene with nests: which liquid is drawn where, boxes that go along with a body, surfaces
    without a gap between them. */
 #include "calls.h"
+#include "failing_memory.h"
 #include "tobiuo/drawing.h"
 #include <math.h>
 #include <setjmp.h>
@@ -171,6 +172,25 @@ static void boxes_go_along_with_bodies(void **state)
     assert_int_equal(tobi_nest_box(&looks, &def, &m, box), 0);
 }
 
+static void without_memory_nothing_is_added(void **state)
+{
+    (void)state;
+    tobi_moment own = fill(FINE, 2);
+    int failed = 0;
+    for (int n = 1; n < 6; n++) {
+        tobi_moment m = fill(N, 1);
+        tobi_error err = { 0 };
+        allocations = 0, fail_at = n;
+        const tobi_status status = tobi_moment_add_nest(&m, &own, right, 1.0/FINE, &err);
+        fail_at = 0;
+        failed += status == TOBI_NO_MEMORY;
+        if (status != TOBI_OK) assert_true(m.count == N*N && m.nest_count == 0);
+        tobi_moment_free(&m);
+    }
+    assert_true(failed == (ALLOCATIONS_FAIL ? 4 : 0));
+    tobi_moment_free(&own);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -179,7 +199,7 @@ int main(void)
         cmocka_unit_test(particles_have_the_size_of_their_spacing),
         cmocka_unit_test(colors_end_at_what_is_shown),
         cmocka_unit_test(surfaces_meet_without_a_gap),
-        cmocka_unit_test(boxes_go_along_with_bodies),
+        cmocka_unit_test(boxes_go_along_with_bodies), cmocka_unit_test(without_memory_nothing_is_added),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

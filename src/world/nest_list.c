@@ -1,0 +1,38 @@
+/* Which nests a world has, and where they are. Drawback: an outer world that is destroyed before its nests
+   leaves them without one. */
+#include "world/fit.h"
+#include "world/nest.h"
+
+void tobi_nest_join(tobi_world *w)
+{
+    tobi_world **last = &w->outer->first_nest;
+    while (*last) last = &(*last)->next_nest;
+    *last = w;
+}
+
+void tobi_nest_leave(tobi_world *w)
+{
+    for (tobi_world *n = w->first_nest; n; n = n->next_nest) n->outer = NULL;
+    if (!w->outer) return;
+    tobi_world **at = &w->outer->first_nest;
+    while (*at && *at != w) at = &(*at)->next_nest;
+    if (*at) *at = w->next_nest;
+}
+
+tobi_world *tobi_world_nest_at(const tobi_world *outer, int index)
+{
+    tobi_world *n = outer ? outer->first_nest : NULL;
+    for (int k = 0; n && k < index; k++) n = n->next_nest;
+    return index < 0 ? NULL : n;
+}
+
+int tobi_world_nest_box(const tobi_world *w, double box[2][3], double *spacing)
+{
+    if (!w || !box || !spacing || !w->sim.nest.outer) return 0;
+    for (int a = 0; a < 3; a++) {
+        box[0][a] = w->sim.nest.lower[a] + w->system[0].box.lower[a];
+        box[1][a] = w->sim.nest.upper[a] + w->system[0].box.lower[a];
+    }
+    *spacing = tobi_world_spacing(w, &w->system[0]);
+    return 1;
+}
