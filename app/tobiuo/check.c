@@ -189,24 +189,31 @@ static void print_scene(const tobi_scene *scene, const tobi_world *world, const 
                tobi_scene_import_table(scene));
 }
 
-/* Starts the nests and tells what they are. *share: their particles times the steps that they take in one of
-   the scene; *bytes: of memory. */
-static tobi_status print_nests(const tobi_scene *scene, const tobi_nests *nests, double *share, double *bytes,
+/* Of all nests: their particles times the steps that they take in one of the scene, at the start and when
+   liquid has come; bytes of memory then. */
+typedef struct nest_cost { double start, most, bytes; } nest_cost;
+
+/* Starts the nests and tells what they are. each: bytes of a particle of the scene. */
+static tobi_status print_nests(const tobi_scene *scene, const tobi_nests *nests, double each, nest_cost *cost,
                                tobi_error *err)
 {
     const char *name;
     tobi_world *w;
-    *share = *bytes = 0;
+    *cost = (nest_cost){ 0 };
     for (int k = 0; (w = tobi_nests_world(nests, k, &name)) != NULL; k++) {
         int64_t fluid, bodies, size;
         const double spacing = tobi_nests_spacing(nests, k);
         tobi_status status = tobi_world_start(w, err);
         if (status == TOBI_OK) status = tobi_world_estimate(w, &fluid, &bodies, &size, err);
         if (status != TOBI_OK) return status;
+        const int refinement = tobi_scene_nest_def(scene, k)->refinement;
+        const double most = fmax(tobi_world_nest_most(w), (double)fluid);
         print_label(tr("nest"));
-        printf(tr("%s: spacing %g m, %lld particles at the start\n"), name, spacing, (long long)fluid);
-        *share += (double)fluid*tobi_scene_world_def(scene)->spacing/spacing;
-        *bytes += (double)size;
+        printf(tr("%s: spacing %g m, %lld particles at the start, at most %lld when liquid has come\n"), name,
+               spacing, (long long)fluid, (long long)most);
+        cost->start += (double)fluid*refinement;
+        cost->most += most*refinement;
+        cost->bytes += (double)size + (most - (double)fluid)*each;
     }
     return TOBI_OK;
 }
@@ -227,16 +234,16 @@ static void print_size(const tobi_scene *scene, const tobi_run_size *size)
     free(dir);
 }
 
-/* more: of nests, over the time of the scene's own steps. */
-static int print_time(const tobi_scene *scene, const trial *t, double more)
+/* Of nests over the time of the scene's own steps: at the start, and when liquid has come. */
+static int print_time(const tobi_scene *scene, const trial *t, double start, double more)
 {
     const double end = tobi_scene_world_def(scene)->end_time;
     char least[32], most[32];
     if (t->status != TOBI_OK) return complain("after %d steps: %s", t->steps, t->err.text);
     if (t->steps < 2) return 0;
-    duration_text((1 + more) * t->wall * end / t->most, least);
+    duration_text((1 + start) * t->wall * end / t->most, least);
     duration_text((1 + more) * t->wall * end / t->least, most);
-    const int differ = is_range(t) && strcmp(least, most) != 0;
+    const int differ = (is_range(t) || more > start) && strcmp(least, most) != 0;
     print_label(tr("wall clock"));
     printf(tr("about %s%s%s for the steps on this machine, if as fast as the first %d%s%s\n"),
            differ ? least : "", differ ? tr(" to ") : "", most, t->steps,
@@ -314,7 +321,7 @@ static int check_world(tobi_scene *scene)
     tobi_world *world = NULL;
     cost c = { 0 };
     tobi_nests *nests = NULL;
-    double share = 0, bytes = 0;
+    nest_cost more;
     tobi_status status = tobi_scene_build(scene, &world, &err);
     if (status == TOBI_OK) status = tobi_nests_create(scene, world, &nests, &err);
     if (status == TOBI_OK) status = find_cost(scene, world, &c, &err);
@@ -322,10 +329,11 @@ static int check_world(tobi_scene *scene)
     trial t;
     try_steps(tobi_scene_world_def(scene), world, c.fluid <= START_LIMIT, &t);
     print_scene(scene, world, &t);
-    if (print_nests(scene, nests, &share, &bytes, &err) != TOBI_OK ||
+    const double own = fmax((double)c.fluid, 1);
+    if (print_nests(scene, nests, (double)c.bytes/own, &more, &err) != TOBI_OK ||
         tobi_nests_estimate(nests, tobi_scene_world_def(scene)->end_time, &c.size, &err) != TOBI_OK)
         return end_check(scene, world, nests, &err);
-    const double machine = machine_bytes(), needed = all_bytes(&c, world) + bytes;
+    const double machine = machine_bytes(), needed = all_bytes(&c, world) + more.bytes;
     if (c.fluid > 0) {
         print_label(name_particles(scene, world));
         printf("%lld\n", (long long)c.fluid);
@@ -336,7 +344,7 @@ static int check_world(tobi_scene *scene)
     printf(tr("%.1f MB of %.0f MB\n"), needed * 1e-6, machine * 1e-6);
     print_size(scene, &c.size);
     int code = needed > machine ? complain("%s", tr(too_many)) : 0;
-    if (c.fluid <= START_LIMIT) code |= print_time(scene, &t, share/fmax((double)c.fluid, 1));
+    if (c.fluid <= START_LIMIT) code |= print_time(scene, &t, more.start/own, more.most/own);
     else {
         print_label(tr("wall clock"));
         printf(tr("not measured with more than %d particles\n"), START_LIMIT);

@@ -44,6 +44,7 @@ typedef struct plotter {
     FILE *script;
     tobi_scene *scene;          /* NULL: no references, 3-D                           */
     int dimension;
+    int is_nest;                /* 1: bodies may lie outside of its box                */
     table history, bodies, solids, probes, lines, joints;   /* without columns if there is no such file */
     char **files;               /* names of the pictures                              */
     int file_count;
@@ -188,7 +189,7 @@ static int draw_rows(plotter *plot, const rows *r, const picture_row *list)
         for (int k = 0; k < PANEL_LIMIT && row->panels[k].y_label && code == 0; k++)
             code = add_panel(&p, r, &row->panels[k], plot->dimension);
         for (int k = 0; k < p.panels; k++) drawn += panel_has_values(&p, &p.panel[k]);
-        if (!drawn && !row->optional && code == 0)
+        if (!drawn && !row->optional && !(plot->is_nest && r->name) && code == 0)
             fprintf(stderr, "tobiuo: note: %s has no values for the picture \"%s\"\n",
                     r->table->path, p.title);
         if (drawn && code == 0) code = finish_picture(plot, &p, name);
@@ -427,6 +428,9 @@ static int draw_all(plotter *plot)
         return complain("cannot make %s: %s", plot->folder, tr(strerror(errno)));
     if (lstat(plot->folder, &st) != 0 || !S_ISDIR(st.st_mode))
         return complain("%s is no folder (a link is not followed)", plot->folder);
+    char *outer = find_outer(dir);
+    plot->is_nest = outer != NULL;
+    free(outer);
     code = read_scene(plot);
     if (code == 0) code = write_script(plot);
     if (code == 0) code = run_gnuplot(plot->folder);

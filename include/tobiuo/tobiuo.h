@@ -149,6 +149,9 @@ TOBI_API tobi_world *tobi_world_nest_at(const tobi_world *outer, int index);
 /* 1 for a nest: where its box is now, m, infinite where a side of the domain is nearer than the rim is wide,
    and its spacing, m; else 0. */
 TOBI_API int tobi_world_nest_box(const tobi_world *nest, double box[2][3], double *spacing);
+/* How many particles a nest may come to have: as many as have room in its box and the rim, and, of a started
+   world without openings, no more than the outer liquid makes. 0 for a world that is none. */
+TOBI_API double tobi_world_nest_most(const tobi_world *nest);
 /* Whether a name fits a nest, and the folder of its results: letters, digits, _ and -, at most 63. */
 TOBI_API int tobi_nest_name_fits(const char *name);
 /* One of the steps that tobi_world_advance takes to time t, s, which the last one hits exactly: the nests of

@@ -2,6 +2,7 @@
    leaves them without one. */
 #include "world/fit.h"
 #include "world/nest.h"
+#include <math.h>
 
 void tobi_nest_join(tobi_world *w)
 {
@@ -35,4 +36,19 @@ int tobi_world_nest_box(const tobi_world *w, double box[2][3], double *spacing)
     }
     *spacing = tobi_world_spacing(w, &w->system[0]);
     return 1;
+}
+
+double tobi_world_nest_most(const tobi_world *w)
+{
+    if (!w || !w->sim.nest.outer) return 0;
+    const tobi_nest *n = &w->sim.nest;
+    const tobi_system *s = &w->system[0];
+    const double finer = n->outer->smoothing.spacing/s->smoothing.spacing;
+    double room = 1, liquid = (double)n->outer->particles.count;
+    for (int a = 0; a < s->box.dimension; a++) {
+        const double low = fmax(n->lower[a] - n->rim, 0), high = fmin(n->upper[a] + n->rim, s->box.size[a]);
+        room *= fmax(high - low, 0)/s->smoothing.spacing;
+    }
+    for (int a = 0; a < s->box.dimension; a++) liquid *= finer;
+    return floor(n->outer->sim->opening_count || !w->outer->started ? room + 0.5 : fmin(room, liquid) + 0.5);
 }

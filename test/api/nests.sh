@@ -127,19 +127,28 @@ done
 check "no refused run leaves a folder" test ! -e out
 expect 0 "" check tank.json
 check "check names the nests" grep -q "^nest  *end: spacing 0.0125 m, [0-9]* particles" out.txt
+cat > dry.json <<'EOF'
+{ "method": "isph", "dimension": 2, "domain": { "min": [0, 0], "max": [2, 1] }, "spacing": 0.02, "end_time": 1,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [0.4, 0.4] } } ] } ],
+  "nests": [ { "name": "wall", "box": { "min": [1.5, 0], "max": [2, 1] }, "refinement": 2 } ] }
+EOF
+expect 0 "" check dry.json
+check "check says what a dry nest may have" grep -q "0 particles at the start, at most 1600 when liquid has come" out.txt
+check "and the time until then" grep -q "^wall clock .* to .*, nests by their particles" out.txt
 outputs=$(grep "^outputs" out.txt)
 expect 0 "" check tank.json --set 'nests=[]'
 check "and counts their files" test "$outputs" != "$(grep "^outputs" out.txt)"
 
 # Commands.
 if command -v gnuplot > /dev/null; then
-    expect 0 "has no values for the picture" report whole_isph      # of bodies that are not in the box
+    expect 0 "" report whole_isph
+    check "nothing is told of bodies that are not in the box" test ! -s err.txt
     check "the report lists its nests" grep -q '<a href="nests/end/report.html">end</a>' whole_isph/report.html
     check "which have reports" test -s whole_isph/nests/end/report.html -a -s whole_isph/nests/buoy/report.html
     check "without nests of their own" sh -c '! grep -q "<h2>Nests" whole_isph/nests/end/report.html'
     expect 1 "report.html exists" report whole_isph
     rm -r parts_isph/nests/end
-    expect 0 "has no values for the picture" report parts_isph
+    expect 0 "" report parts_isph
     check "a nest that was deleted is said to be" grep -q "<td>end<td>deleted" parts_isph/report.html
 fi
 for results in whole_isph whole_isph/nests/end; do

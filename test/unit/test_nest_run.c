@@ -54,6 +54,8 @@ static void a_world_knows_its_nests(void **state)
     assert_null(tobi_world_nest_at(a.world, -1));
     assert_int_equal(tobi_world_nest_box(a.world, box, &spacing), 0);
     assert_int_equal(tobi_world_nest_box(tobi_world_nest_at(a.world, 1), box, &spacing), 1);
+    assert_true(tobi_world_nest_most(a.world) == 0);
+    assert_true(tobi_world_nest_most(tobi_world_nest_at(a.world, 1)) > 10*20);      /* with the rim */
     assert_true(fabs(box[0][0] - 0.3) < 1e-12 && isinf(box[1][0]) && fabs(spacing - 0.01) < 1e-12);
     tobi_nests_free(a.nests);
     a.nests = NULL;
