@@ -113,8 +113,11 @@ static void print_scalars(const tobi_world *world)
     }
 }
 
+enum { LINES_LISTED = 12 };
+
 /* The first steps of a run, and what they tell of all. */
 typedef struct trial {
+    tobi_line_info line[LINES_LISTED];       /* as they start               */
     int steps;               /* taken; below 2 nothing is known             */
     double wall, step;       /* of one of them, s                           */
     double least, most;      /* time step of the run, s; 0: it is not known */
@@ -137,10 +140,22 @@ static void try_steps(const tobi_world_def *d, tobi_world *world, int starts, tr
 {
     *t = (trial){ .least = find_step(d, world) };
     t->most = t->least;
+    for (int k = 0; k < LINES_LISTED; k++) tobi_world_line(world, k, &t->line[k]);
     if (starts) t->status = measure_steps(world, d->end_time, &t->steps, &t->wall, &t->step, &t->err);
     if (t->status != TOBI_OK || t->steps < 2 || (d->time_step > 0.0 && t->step > 0.5 * t->least)) return;
     t->most = t->step;
     t->least = t->least > 0.0 ? fmin(t->least, t->step) : t->step;
+}
+
+/* Lines as they start. */
+static void print_lines(const tobi_world *world, int dimension, const trial *t)
+{
+    const char *name;
+    for (int k = 0; k < LINES_LISTED && (name = tobi_world_line(world, k, NULL)); k++) {
+        print_label(tr("line"));
+        printf(tr("%s: %.4g m from end to end, tension %.4g %s at the start\n"), name, t->line[k].distance,
+               t->line[k].tension, dimension == 2 ? "N per m" : "N");
+    }
 }
 
 static int is_range(const trial *t) { return t->most > 1.3 * t->least; }
@@ -177,6 +192,7 @@ static void print_scene(const tobi_scene *scene, const tobi_world *world, const 
     print_step(d, world, t);
     print_solids(world, d->dimension);
     print_bodies(world, d->dimension);
+    if (t->steps > 0) print_lines(world, d->dimension, t);
     print_zones(world, d->dimension);
     print_scalars(world);
     const char *note;

@@ -34,6 +34,12 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return 0;
 }
 
+static void tell_end(double time, double end)
+{
+    if (time > end) complain("the run is at %g s, beyond %g s: there is nothing to do", time, end);
+    else complain("the run has reached its end, %g s; --until S takes it on", end);
+}
+
 static int resume_scene(tobi_scene *scene, const resume_options *o)
 {
     tobi_error err = { 0 };
@@ -59,7 +65,7 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
         if (!o->quiet) fprintf(stderr, "tobiuo: %s\n", tobi_run_note(run));
         if (*tobi_run_losses(run)) complain("results in %s: %s", o->dir, tobi_run_losses(run));
         if (!o->quiet && !(tobi_world_time(world) < d.end))
-            complain("the run has reached its end, %g s; --until S takes it on", d.end);
+            tell_end(tobi_world_time(world), d.end);
         code = drive(world, run, &d);
         free(told);
     }

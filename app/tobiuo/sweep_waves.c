@@ -32,6 +32,19 @@ static int is_complete(const sweep *s, int run)
     return whole;
 }
 
+/* What the program says of a run, a line each behind the run's name, until it closes its end. */
+static void tell(const sweep *s, int run, int from)
+{
+    FILE *in = fdopen(from, "r");
+    char *line = NULL, *name = sweep_name(s, run);
+    size_t room = 0;
+    if (!in) exit(complain("out of memory"));
+    while (getline(&line, &room, in) > 0) fprintf(stderr, "%s: %s", name, line);
+    fclose(in);
+    free(line);
+    free(name);
+}
+
 /* The program itself: what it finds is in files, what it complains of is told. */
 static int analyse(const sweep *s, int run)
 {
@@ -39,7 +52,8 @@ static int analyse(const sweep *s, int run)
     overrides a = { 0 };
     posix_spawn_file_actions_t actions;
     pid_t child;
-    int state = 0;
+    int state = 0, ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) return complain("the program does not start itself: %s", tr(strerror(errno)));
     if (!words) exit(complain("out of memory"));
     for (int k = 0; k < FILES; k++) {        /* of an earlier call with other words */
         char *old = path_of(s, run, files[k]);
@@ -52,8 +66,11 @@ static int analyse(const sweep *s, int run)
     while ((word = strsep(&rest, " "))) if (*word) overrides_add(&a, "%s", word);
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
     const int failed = posix_spawn(&child, "/proc/self/exe", &actions, NULL, a.text, environ);
     posix_spawn_file_actions_destroy(&actions);
+    close(ends[1]);
+    tell(s, run, ends[0]);
     while (!failed && waitpid(child, &state, 0) < 0 && errno == EINTR) { }
     overrides_free(&a);
     free(words);

@@ -385,7 +385,7 @@ static int tell(answers *a)
     int code = take_waves(a);
     const double periods = w->set.peak*(double)w->set.count*w->set.step;
     if (!code && periods < FEW_PERIODS)
-        fprintf(stderr, tr("tobiuo: note: --response: %.2g periods of the waves; gains and phases of fewer "
+        fprintf(stderr, tr("tobiuo: note: --response: %.3g periods of the waves; gains and phases of fewer "
                 "than %g are rough\n"), periods, FEW_PERIODS);
     for (int k = 0; k < w->options->response_count && !code; k++) {
         const char *name = w->options->responses[k];

@@ -271,6 +271,17 @@ static void note_growth(const wave_run *w)
     }
 }
 
+/* Of so few periods the waves that come back are not told from those that go on: a tank's 0.2 became 0.5. */
+static const double FEW_PERIODS = 4;
+
+static void note_shortness(const wave_run *w)
+{
+    const double periods = w->set.peak*(double)w->set.count*w->set.step;
+    if (w->options->group_count > 0 && periods < FEW_PERIODS)
+        fprintf(stderr, tr("tobiuo: note: --gauges: %.3g periods of the waves; reflection and transmission of "
+                "fewer than %g are rough\n"), periods, FEW_PERIODS);
+}
+
 /* Columns of both tables. */
 static const struct gauge_column { const char *name, *unit; size_t offset; } columns[] = {
     { "H_m0", "m", offsetof(wave_gauge, height_m0) }, { "H_third", "m", offsetof(wave_gauge, height_third) },
@@ -442,6 +453,7 @@ static int analyse(wave_run *w)
     if (!(w->set.depth > 0))
         return complain("%s: the water has no depth at the gauges; give --depth", o->dir);
     note_growth(w);
+    note_shortness(w);
     for (int k = 0; k < o->group_count && !code; k++) code = split_group(w, k);
     if (code) return code;
     print_tables(w);

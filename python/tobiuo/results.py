@@ -1,5 +1,6 @@
 """What a run has written, as arrays."""
 import csv
+import difflib
 import json
 import os
 import pathlib
@@ -103,9 +104,30 @@ class Results:
         return read_table(self.folder/f"{name}.csv", of)
 
 
+class Table(dict):
+    """Columns by the names of the header. A unit may be left out: table["G1_level"] is "G1_level [m]"."""
+
+    def _find(self, key):
+        return next((name for name in self if name == key or name.partition(" [")[0] == key), None)
+
+    def __missing__(self, key):
+        name = self._find(key)
+        if name is None:
+            near = difflib.get_close_matches(str(key), [known.partition(" [")[0] for known in self])
+            raise KeyError(f"{key!r}; the columns are {', '.join(self)}" +
+                           (f"; did you mean {near[0]!r}?" if near else ""))
+        return self[name]
+
+    def __contains__(self, key):
+        return self._find(key) is not None
+
+    def get(self, key, default=None):
+        return self[key] if key in self else default
+
+
 def read_table(path, of=None):
-    """Columns of a CSV file by name: arrays of numbers, lists of texts. of: only the rows of this name, of
-    bodies.csv and solids.csv. The header of history.csv has plain names, others may add "[unit]"."""
+    """The Table of a CSV file: arrays of numbers, lists of texts. of: only the rows of this name, of bodies.csv and
+    solids.csv."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = csv.reader(line for line in file if not line.startswith("#"))
         head = next(rows, [])
@@ -117,7 +139,7 @@ def read_table(path, of=None):
         if of not in names:
             raise KeyError(f"{of!r}; {path} has: {', '.join(names)}")
         rows = [row for row in rows if row[head.index("name")] == of]
-    return {key: _column([row[k] for row in rows]) for k, key in enumerate(head)}
+    return Table((key, _column([row[k] for row in rows])) for k, key in enumerate(head))
 
 
 def _column(texts):

@@ -7,6 +7,8 @@ from . import scene as scenes
 from .library import Error, array_of, call, ffi, lib, raise_error, text_of, values_of, vector
 
 _SETS = {"fluid": "TOBI_FLUID", "bodies": "TOBI_BODIES"}
+# Found once: cffi looks a function up under a lock. A collection that frees a world may come while it is held.
+_free_nests, _free_world, _free_scene = lib.tobi_nests_free, lib.tobi_world_destroy, lib.tobi_scene_free
 
 
 class _Named(Mapping):
@@ -221,9 +223,9 @@ class World:
         """Frees the memory. The world cannot be used afterwards."""
         if self._handle is not None:
             world = self._world                     # not in a call
-            lib.tobi_nests_free(self._made_nests[0])
-            lib.tobi_world_destroy(world)
-            lib.tobi_scene_free(self._scene)
+            _free_nests(self._made_nests[0])
+            _free_world(world)
+            _free_scene(self._scene)
         self._handle = None
 
     def __del__(self):

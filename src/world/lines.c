@@ -106,3 +106,51 @@ const char *tobi_world_line(const tobi_world *w, int line, tobi_line_info *info)
     if (info) *info = w->lines[line].info;
     return w->lines[line].name;
 }
+
+/* m, from a place of the world to the box around a body; *across: the longest edge of that box. */
+static double find_distance(const tobi_body *b, const double place[3], int dimension, double *across)
+{
+    double square = 0;
+    *across = 0;
+    for (int a = 0; a < dimension; a++) {
+        double least = INFINITY, most = -INFINITY;
+        for (int64_t i = 0; i < b->mesh.vertex_count; i++) {
+            least = fmin(least, b->vertex[i][a] + b->lower[a]);
+            most = fmax(most, b->vertex[i][a] + b->lower[a]);
+        }
+        const double out = fmax(0, fmax(least - place[a], place[a] - most));
+        square += out*out;
+        *across = fmax(*across, most - least);
+    }
+    return sqrt(square);
+}
+
+/* A place that is farther from its body than the body is large is seldom meant. */
+static tobi_status note_end(tobi_world *w, const tobi_line *l, int body, const double place[3],
+                            const char *key, tobi_error *err)
+{
+    char text[TOBI_NOTE];
+    double across;
+    if (body < 0) return TOBI_OK;
+    const double away = find_distance(&w->sim.bodies[body], place, w->sim.def.dimension, &across);
+    if (!(away > across)) return TOBI_OK;
+    snprintf(text, sizeof text, tr("'%s' is %.3g m away from body '%s', which is %.3g m across: it is a "
+             "place in the domain, as the body starts\n"), key, away, w->sim.bodies[body].name, across);
+    return tobi_world_add_notes(w, "line", l->name, text, err);
+}
+
+tobi_status tobi_world_note_lines(tobi_world *w, tobi_error *err)
+{
+    for (int k = 0; k < w->line_count; k++) {
+        const tobi_line *l = &w->lines[k];
+        char text[TOBI_NOTE];
+        TOBI_TRY(note_end(w, l, l->body, l->info.point, "point", err));
+        TOBI_TRY(note_end(w, l, l->to_body, l->info.to, "to", err));
+        if (l->kind != TOBI_LINE_CATENARY || l->length > l->info.distance) continue;
+        snprintf(text, sizeof text, tr("is %.4g m long, and its ends are %.4g m apart: it starts taut, with "
+                 "%.4g %s\n"), l->length, l->info.distance, l->info.tension,
+                 w->sim.def.dimension == 2 ? "N per m" : "N");
+        TOBI_TRY(tobi_world_add_notes(w, "line", l->name, text, err));
+    }
+    return TOBI_OK;
+}

@@ -56,6 +56,18 @@ static tobi_status note_gravity(tobi_world *w, double g, tobi_error *err)
     return tobi_world_add_notes(w, "world", "gravity", text, err);
 }
 
+/* A number without its sign: everything falls to the lid. */
+static tobi_status note_up(tobi_world *w, double g, tobi_error *err)
+{
+    const int up = w->sim.def.dimension - 1;
+    const double along = w->sim.def.gravity[up];
+    char text[TOBI_NOTE];
+    if (!(along > 0.5*g)) return TOBI_OK;
+    snprintf(text, sizeof text, tr("points upwards: its %c is %.4g m/s2; on the earth it is -9.81\n"),
+             "xyz"[up], along);
+    return tobi_world_add_notes(w, "world", "gravity", text, err);
+}
+
 /* Lengths in millimetres make a puddle an ocean, in which nothing happens within its seconds. */
 static tobi_status note_size(tobi_world *w, double g, tobi_error *err)
 {
@@ -104,6 +116,7 @@ tobi_status tobi_world_note_units(tobi_world *w, tobi_error *err)
 {
     const double g = vec3_length(w->sim.def.gravity);
     TOBI_TRY(note_gravity(w, g, err));
+    TOBI_TRY(note_up(w, g, err));
     TOBI_TRY(note_jets(w, err));
     if (w->system[0].fluid_count == 0) return TOBI_OK;
     TOBI_TRY(note_gas(w, err));

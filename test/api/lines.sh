@@ -37,6 +37,13 @@ refuse 'weight: is 0 N/m, a catenary has a weight' lines.chain.weight=0
 refuse 'damping: is of springs and ropes' lines.chain.damping=1
 refuse 'weight: is of a catenary' lines.spring.weight=1
 refuse 'rests: is of a catenary' lines.spring.rests=true
+# Lines at the start, and what is seldom meant.
+noted() { expect 0 "" check buoy.json --set "$2"; check "check says: $1" grep -qF "$1" out.txt; }
+noted 'chain: 0.3606 m from end to end, tension 15.19 N per m at the start' lines.chain.length=0.4
+noted "line 'chain': is 0.3 m long, and its ends are 0.3606 m apart: it starts taut, with" lines.chain.length=0.3
+noted "line 'spring': 'point' is 0.4 m away from body 'buoy', which is 0.2 m across" "lines.spring.point=[0,0.3]"
+expect 0 "" check buoy.json
+check "nothing is said of others" test "$(grep -c "^note.*line '" out.txt)" = 0
 expect 0 "" describe lines
 check "describe names the columns" grep -q "^  distance " out.txt
 check "and the table" grep -q "The columns of lines.csv for each line" out.txt
@@ -69,6 +76,7 @@ if command -v gnuplot > /dev/null; then
     done
 fi
 expect 0 "the run has reached its end, 0.1 s; --until S takes it on" resume s/stiffness=100
+expect 0 "the run is at 0.1 s, beyond 0.05 s: there is nothing to do" resume s/stiffness=100 --until 0.05
 
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

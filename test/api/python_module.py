@@ -272,6 +272,20 @@ class Module(unittest.TestCase):
         with self.assertRaisesRegex(tobiuo.Error, "nowhere"):
             tobiuo.Results("nowhere")
 
+    def test_columns_are_found_without_their_units(self):
+        path = pathlib.Path("levels.csv")
+        path.write_text("time [s],G1_level [m],G10_level [m]\n0,0.5,1\n1,0.6,2\n")
+        table = tobiuo.read_table(path)
+        self.assertEqual(list(table), ["time [s]", "G1_level [m]", "G10_level [m]"])
+        for name in ("G1_level", "G1_level [m]"):
+            self.assertEqual(list(table[name]), [0.5, 0.6])
+            self.assertEqual(list(table.get(name)), [0.5, 0.6])
+            self.assertIn(name, table)
+        self.assertNotIn("G1", table)
+        self.assertEqual(table.get("G1", 7), 7)
+        with self.assertRaisesRegex(KeyError, "'G2_level'; the columns are time .*; did you mean 'G1_level'"):
+            table["G2_level"]
+
     def test_a_world_goes_on_from_a_state(self):
         with tobiuo.World(POOL) as one, tobiuo.World(POOL) as other:
             one.advance(0.05)
@@ -439,6 +453,13 @@ class Module(unittest.TestCase):
                                  env={**os.environ, "PYTHONPATH": sys.path[0]}).stdout
             print(out, end="")
             self.assertRegex(out, "[0-9]")
+
+    def test_a_world_is_freed_while_cffi_is_locked(self):
+        code = ("import tobiuo, tobiuo.library as l; w = tobiuo.World(tobiuo.shipped('dam_break_2d'), set='spacing=0.02'); "
+                "l.ffi._lock.acquire(); del w; print('freed')")
+        out = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=60,
+                             env={**os.environ, "PYTHONPATH": sys.path[0]}).stdout
+        self.assertEqual(out, "freed\n")
 
     def test_a_closed_world_says_so(self):
         world = tobiuo.World(tobiuo.shipped("dam_break_2d"), set={"spacing": 0.02})

@@ -114,6 +114,7 @@ cat > small.json <<'JSON'
 JSON
 sweep="sweep small.json --out swept --set frame.surge.period=0.9,1.2"
 expect 0 "note: --response: 5 periods of the waves; gains" $sweep --waves "--from 1.2 --response raft"
+check "a note has the name of its run" grep -q "^period=1.2: tobiuo: note: --response" err.txt
 check "a row for each gauge of each run" test "$(cut -d, -f1-3 swept/sweep_waves.csv | paste -sd ' ')" = \
     "run,period,gauge 0,0.9,G1 1,1.2,G1"
 check "and each response" test "$(cut -d, -f1-3 swept/sweep_wave_responses.csv | paste -sd ' ')" = \

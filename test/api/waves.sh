@@ -75,6 +75,8 @@ END
 near() { check "$1 $3 of row $2 is $4, not $(tail -n +$(($2 + 2)) "$1" | head -1)" $python near.py "$@"; }
 
 $python levels.py whole regular
+expect 0 "periods of the waves; reflection and transmission of fewer than 4 are rough" \
+    waves whole --gauges G1,G2,G3 --from 17
 expect 0 "" waves whole --gauges G1,G2,G3 --gauges B1,B3 --gauges G1,G2
 near whole/wave_groups.csv 0 "H_m0_on [m]" 0.084853 0.004       # 2 sqrt(2) amplitudes
 near whole/wave_groups.csv 0 "H_m0_back [m]" 0.033941 0.01

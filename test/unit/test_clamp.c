@@ -7,6 +7,7 @@
 #include <cmocka.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include "calls.h"
 #include "mpm/contact/clamp.h"
 #include "mpm/particle_fields.h"
@@ -279,9 +280,31 @@ static void water_sees_what_is_outside(void **state)
     tobi_world_destroy(world);
 }
 
+/* A clamp and a side that both hold a solid may strain it without bound: that is told. */
+static void a_clamp_beside_a_side_is_noted(void **state)
+{
+    (void)state;
+    const struct { double floor; tobi_wall wall; int told; } cases[] = {
+        { -0.05, TOBI_WALL_SLIP, 1 }, { -0.05, TOBI_WALL_NO_SLIP, 1 }, { -0.05, TOBI_WALL_SEPARATE, 0 },
+        { -0.075, TOBI_WALL_SEPARATE, 1 }, { -0.05, TOBI_WALL_OPEN, 0 }, { -0.1, TOBI_WALL_SLIP, 0 },
+    };
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        setup s = make_setup();
+        int told = 0;
+        s.solid.world.domain_min[2] = s.body.box_min[2] = cases[k].floor;
+        s.solid.world.wall_min[2] = cases[k].wall;
+        tobi_world *world = make_world(&s);
+        for (int n = 0; tobi_world_note(world, n); n++)
+            told += strstr(tobi_world_note(world, n), "clamped of it begins beside the side at the lower z") != NULL;
+        assert_int_equal(told, cases[k].told);
+        tobi_world_destroy(world);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_clamp_beside_a_side_is_noted),
         cmocka_unit_test(a_driven_body_feels_the_mass), cmocka_unit_test(a_turn_brings_it_back),
         cmocka_unit_test(a_free_body_keeps_momentum), cmocka_unit_test(a_free_fall_has_no_force),
         cmocka_unit_test(the_same_bits), cmocka_unit_test(what_is_refused),

@@ -69,6 +69,8 @@ static void other_units_are_told(void **state)
     expect(x, "'water': its viscosity, 1e+04 Pa s, allows steps of");
     x = USUAL, x.gravity = 1000;
     expect(x, "gravity': is 9810 m/s2, 1000 times that of the earth");
+    x = USUAL, x.gravity = -1;
+    expect(x, "gravity': points upwards: its y is 9.81 m/s2");
 }
 
 static void a_tank_is_not(void **state)
