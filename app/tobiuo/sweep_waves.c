@@ -53,7 +53,8 @@ static int analyse(const sweep *s, int run)
     posix_spawn_file_actions_t actions;
     pid_t child;
     int state = 0, ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) return complain("the program does not start itself: %s", tr(strerror(errno)));
+    if (pipe2(ends, O_CLOEXEC) != 0)
+        return complain("the program does not start itself: %s", tr(strerror(errno)));
     if (!words) exit(complain("out of memory"));
     for (int k = 0; k < FILES; k++) {        /* of an earlier call with other words */
         char *old = path_of(s, run, files[k]);

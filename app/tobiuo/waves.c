@@ -278,8 +278,8 @@ static void note_shortness(const wave_run *w)
 {
     const double periods = w->set.peak*(double)w->set.count*w->set.step;
     if (w->options->group_count > 0 && periods < FEW_PERIODS)
-        fprintf(stderr, tr("tobiuo: note: --gauges: %.3g periods of the waves; reflection and transmission of "
-                "fewer than %g are rough\n"), periods, FEW_PERIODS);
+        fprintf(stderr, tr("tobiuo: note: --gauges: %.3g periods of the waves; reflection and transmission "
+                "of fewer than %g are rough\n"), periods, FEW_PERIODS);
 }
 
 /* Columns of both tables. */

@@ -142,9 +142,9 @@ static tobi_status note_sides(tobi_world *w, const tobi_system *s, int solid, to
         char text[TOBI_NOTE];
         if (wall == TOBI_WALL_OPEN || wall == TOBI_WALL_PERIODIC || gap >= reach*(1 - 1e-6)) continue;
         if (wall == TOBI_WALL_SEPARATE && gap < spacing) continue;
-        snprintf(text, sizeof text, tr("what is clamped of it begins beside the side at the %s %c, which holds "
-                 "it too: both together may strain it without bound; let it begin %.3g m from that side\n"),
-                 side%2 ? tr("upper") : tr("lower"), "xyz"[side/2], reach);
+        snprintf(text, sizeof text, tr("what is clamped of it begins beside the side at the %s %c, which "
+                 "holds it too: both together may strain it without bound; let it begin %.3g m from that "
+                 "side\n"), side%2 ? tr("upper") : tr("lower"), "xyz"[side/2], reach);
         TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[solid].name, text, err));
     }
     return TOBI_OK;

@@ -21,9 +21,9 @@ tobi_status tobi_mixture_check(const tobi_method *m, const tobi_fluid_def *fluid
                          m->density_ratio < TOBI_DENSITY_RATIO ? tr(", isph up to 1 : 1000") : "");
     if (!openings) return TOBI_OK;
     return tobi_fail(err, TOBI_UNSUPPORTED, "is %.10g kg/m3 and that of fluid '%s' is %.10g kg/m3; beside "
-                     "inlets or outlets %s takes fluids of one density; a liquid that is some per cent lighter or "
-                     "heavier is a concentration with an expansion (scalars)", fluid->density, name,
-                     other->density, m->name);
+                     "inlets or outlets %s takes fluids of one density; a liquid that is some per cent "
+                     "lighter or heavier is a concentration with an expansion (scalars)", fluid->density,
+                     name, other->density, m->name);
 }
 
 const char *tobi_mixture_check_flow(int implicit_viscosity, const tobi_fluid_def *fluid, tobi_error *err)
