@@ -71,7 +71,8 @@ static void print_bodies(const tobi_world *world, int dimension)
         print_label(tr("body"));
         printf("%s: %.4g kg%s, %.4g m3%s", tobi_world_body_name(world, k), m.mass, each, m.volume, each);
         if (m.liquid > 0.0) printf(tr(", %.4g of the liquid's density"), m.mass / m.volume / m.liquid);
-        printf(tr(", centre of mass %.4g %.4g %.4g m"), m.centre[0], m.centre[1], m.centre[2]);
+        if (dimension == 2) printf(tr(", centre of mass %.4g %.4g m"), m.centre[0], m.centre[1]);
+        else printf(tr(", centre of mass %.4g %.4g %.4g m"), m.centre[0], m.centre[1], m.centre[2]);
         if (dimension == 3)
             printf(tr(", inertia %.4g %.4g %.4g kg m2"), m.inertia[0], m.inertia[4], m.inertia[8]);
         else printf(tr(", inertia %.4g kg m2/m"), m.inertia[8]);

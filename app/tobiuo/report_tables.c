@@ -108,8 +108,7 @@ static void write_matter_head(const report *r)
           TEXT("centre of mass, m"), TEXT("inertia, kg m2"), TEXT("draught, m"),
           TEXT("GM about x, y, z, m"), NULL },
         { TEXT("body"), TEXT("mass, kg/m"), TEXT("volume, m3/m"), TEXT("of the liquid's density"),
-          TEXT("centre of mass, m"), TEXT("inertia, kg m2/m"), TEXT("draught, m"),
-          TEXT("GM about x, y, z, m"), NULL } };
+          TEXT("centre of mass, m"), TEXT("inertia, kg m2/m"), TEXT("draught, m"), TEXT("GM, m"), NULL } };
     fprintf(r->file, "<h3>%s</h3>\n<div class=wide><table><tr>",
             tr("Bodies that move by forces, at the start"));
     html_heads(r->file, heads[r->dimension == 2]);
@@ -129,13 +128,16 @@ static void write_body_matter(const report *r)
         html_text(r->file, tobi_world_body_name(r->world, k));
         fprintf(r->file, "<td>%.5g<td>%.5g<td>", m.mass, m.volume);
         if (m.liquid > 0) fprintf(r->file, "%.4g", m.mass/m.volume/m.liquid);
-        fprintf(r->file, "<td>%.4g %.4g %.4g<td>", m.centre[0], m.centre[1], m.centre[2]);
-        if (r->dimension == 3) fprintf(r->file, "%.4g %.4g ", m.inertia[0], m.inertia[4]);
-        fprintf(r->file, "%.4g<td>", m.inertia[8]);
-        if (m.draught > 0)
-            fprintf(r->file, "%.4g<td>%.4g %.4g %.4g", m.draught, m.metacentre[0], m.metacentre[1],
-                    m.metacentre[2]);
+        fprintf(r->file, "<td>%.4g %.4g", m.centre[0], m.centre[1]);
+        if (r->dimension == 3)
+            fprintf(r->file, " %.4g<td>%.4g %.4g ", m.centre[2], m.inertia[0], m.inertia[4]);
         else fputs("<td>", r->file);
+        fprintf(r->file, "%.4g<td>", m.inertia[8]);
+        if (m.draught > 0) fprintf(r->file, "%.4g", m.draught);
+        fputs("<td>", r->file);
+        if (m.draught > 0 && r->dimension == 3)
+            fprintf(r->file, "%.4g %.4g ", m.metacentre[0], m.metacentre[1]);
+        if (m.draught > 0) fprintf(r->file, "%.4g", m.metacentre[2]);
         fprintf(r->file, "<td class=doc>%s\n",
                 m.solids > 0 ? tr("without the solids that it holds") : "");
     }

@@ -101,7 +101,11 @@ class Results:
 
     def table(self, name="history", of=None):
         """A table of the run, "history", "bodies", "probes" ...: read_table of its file."""
-        return read_table(self.folder/f"{name}.csv", of)
+        path = self.folder/f"{name}.csv"
+        if not path.exists():
+            there = ", ".join(sorted(file.stem for file in self.folder.glob("*.csv")))
+            raise FileNotFoundError(f"{path} is not there; tables of the run: {there or 'none'}")
+        return read_table(path, of)
 
 
 class Table(dict):

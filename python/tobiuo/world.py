@@ -22,6 +22,9 @@ class _Named(Mapping):
             raise KeyError(f"{name!r}; there are: {', '.join(self._names) or 'none'}")
         return self._take(self._names.index(name))
 
+    def __repr__(self):
+        return f"<{', '.join(self._names) or 'none'}>"
+
     def __iter__(self):
         return iter(self._names)
 

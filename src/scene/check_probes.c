@@ -119,7 +119,8 @@ static void check_body(const one *o)
         if (strcmp(body->def.name, name) == 0) {
             if (body->motion && !body->def.motion_rigid)
                 tobi_source_mistake(o->source, &at,
-                                    "\"%s\" deforms: the sensor would have no place on it", name);
+                                    "\"%s\" deforms: the sensor would have no place on it; "
+                                    "output.tractions has the pressure on its surface", name);
             return;
         }
         if (count < NAMES) names[count++] = body->def.name;

@@ -110,7 +110,8 @@ static const tobi_param body_rows[] = {
       .doc = "Size factor, one number or one per axis, about the mesh's own origin, applied "
              "first." },
     { .key = "rotation.axis", VEC3, AT(tobi_body_def, rotation_axis), .def = { 0, 0, 1 }, DIRECTION,
-      .unit = "1", .doc = "Direction that the mesh is turned about, applied second." },
+      .unit = "1", .doc = "Direction of the axis through the origin of the mesh, of a box that "
+      "of the domain, that it is turned about, applied second." },
     { .key = "rotation.angle", REAL, AT(tobi_body_def, rotation_angle), ANGLE, .unit = "degrees",
       .doc = "Angle of that turn, by the right-hand rule." },
     { .key = "translation", VEC3, AT(tobi_body_def, translation), PLACE, .unit = "m",

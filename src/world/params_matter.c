@@ -82,7 +82,8 @@ static const tobi_param fill_rows[] = {
     { .key = "translation", VEC3, AT(tobi_fill_def, translation), PLACE, .unit = "m",
       .doc = "Where the origin of the mesh is put." },
     { .key = "rotation.axis", VEC3, AT(tobi_fill_def, rotation_axis), .def = { 0, 0, 1 }, DIRECTION,
-      .unit = "1", .doc = "Direction that the mesh is turned about, after the scale." },
+      .unit = "1", .doc = "Direction of the axis through the origin of the mesh that it is turned "
+      "about, after the scale." },
     { .key = "rotation.angle", REAL, AT(tobi_fill_def, rotation_angle), ANGLE, .unit = "degrees",
       .doc = "Angle of that turn, by the right-hand rule." },
     { .key = "velocity", VEC3, AT(tobi_fill_def, velocity), SPEED, .unit = "m/s",

@@ -271,6 +271,9 @@ class Module(unittest.TestCase):
             results.table("history", of="boat")
         with self.assertRaisesRegex(tobiuo.Error, "nowhere"):
             tobiuo.Results("nowhere")
+        with self.assertRaisesRegex(FileNotFoundError, "probe.csv is not there; tables of the run: bodies, history"):
+            results.table("probe")
+        self.assertEqual((repr(world.bodies), repr(world.lines)), ("<float>", "<none>"))
 
     def test_columns_are_found_without_their_units(self):
         path = pathlib.Path("levels.csv")

@@ -204,6 +204,8 @@ END
 "$program" run barge.json --out barge --quiet > out.txt 2> err.txt
 PATH=/nonexistent "$program" report barge --from 0.25 > out.txt 2> err.txt
 check "the table of a line" says barge/report.html "<td>tension<td>N per m<td>"
+check "places and stability in the plane alone" \
+    grep -q "<tr><td>barge<td>25.6<td>0.0512<td>0.5<td>0.96 0.32<td>[^ ]*<td>0.08<td>[^ ]*<td class=doc>" barge/report.html
 check "units of sensors" says barge/report.html "<td>volume<td>m2<td>"
 check "as in the tables" grep -q "^time \[s\],V_volume \[m2\],W_pressure \[Pa\],W_force_x \[N per m\]" barge/probes.csv
 check "a piston and a pier are no small bodies" test "$(grep -c 'It closes the whole section' barge/report.html)" = 2
