@@ -1,15 +1,21 @@
-/* The n-th allocation that the library, or the test itself, asks for fails. Under the address sanitizer,
-   which has its own, none does. To be included by one file of a program. */
+/* The n-th allocation that the library, or the test itself, asks for fails. The address sanitizer, where it is
+   in, tells what a failure has left. To be included by one file of a program. */
 #pragma once
 #include <stddef.h>
 
 static long allocations, fail_at;      /* so many so far; the one that fails, 0 = none */
 
-#ifndef __SANITIZE_ADDRESS__
-enum { ALLOCATIONS_FAIL = 1 };
 extern char __executable_start, etext;
+#ifdef __SANITIZE_ADDRESS__
+void *__interceptor_malloc(size_t), *__interceptor_calloc(size_t, size_t);
+void *__interceptor_realloc(void *, size_t), *__interceptor_aligned_alloc(size_t, size_t);
+#define GIVEN(name) __interceptor_##name
+#else
 void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t);
 void *__libc_memalign(size_t, size_t);
+#define __libc_aligned_alloc __libc_memalign
+#define GIVEN(name) __libc_##name
+#endif
 
 static int fails(const void *caller)
 {
@@ -18,10 +24,7 @@ static int fails(const void *caller)
 }
 #define FAILS fails(__builtin_return_address(0))
 
-void *malloc(size_t n) { return FAILS ? NULL : __libc_malloc(n); }
-void *calloc(size_t n, size_t size) { return FAILS ? NULL : __libc_calloc(n, size); }
-void *realloc(void *p, size_t n) { return FAILS ? NULL : __libc_realloc(p, n); }
-void *aligned_alloc(size_t align, size_t n) { return FAILS ? NULL : __libc_memalign(align, n); }
-#else
-enum { ALLOCATIONS_FAIL = 0 };
-#endif
+void *malloc(size_t n) { return FAILS ? NULL : GIVEN(malloc)(n); }
+void *calloc(size_t n, size_t size) { return FAILS ? NULL : GIVEN(calloc)(n, size); }
+void *realloc(void *p, size_t n) { return FAILS ? NULL : GIVEN(realloc)(p, n); }
+void *aligned_alloc(size_t align, size_t n) { return FAILS ? NULL : GIVEN(aligned_alloc)(align, n); }

@@ -202,10 +202,10 @@ static void trouble_of_nests_is_told(void **state)
     step_to(&a, 0.02);
     int of_nest = 0;
     const char *told;
+    const tobi_status status = tobi_run_finish(a.run, "complete", NULL);      /* waits for all writers */
+    setrlimit(RLIMIT_FSIZE, &before);
     for (int k = 0; (told = tobi_run_trouble(a.run, k)); k++) of_nest += strstr(told, "nests/") != NULL;
     const int64_t unwritten = tobi_run_unwritten(a.run);
-    const tobi_status status = tobi_run_finish(a.run, "complete", NULL);
-    setrlimit(RLIMIT_FSIZE, &before);
     assert_int_equal(status, TOBI_OK);
     assert_true(of_nest >= 2 && unwritten >= 3);
     if (!strstr(tobi_run_losses(a.run), "nest left: ") || !strstr(tobi_run_losses(a.run), "nest right: "))
