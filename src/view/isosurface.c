@@ -174,10 +174,10 @@ static void limit_block(const grid *s, int64_t b)
         }
 }
 
-/* Likewise where the liquid of a nest goes on. Half a cell farther, so that smoothing leaves no groove. */
+/* Likewise where the liquid of a nest goes on. Farther, so that there is no groove between. */
 static void limit_to_nests(const grid *s, int64_t b)
 {
-    static const double LAP = 0.5;      /* cells */
+    static const double LAP = 2;      /* cells: smoothing rounds so much */
     const tobi_picture *f = s->f;
     float *node = s->node + b*BLOCK_NODES;
     for (int z = 0; z < BLOCK_EDGE; z++)

@@ -1,5 +1,5 @@
-/* The n-th allocation that the library, or the test itself, asks for fails. The address sanitizer, where it is
-   in, tells what a failure has left. To be included by one file of a program. */
+/* The n-th allocation that the library, or the test itself, asks for fails. The address sanitizer, where it
+   is in, tells what a failure has left. To be included by one file of a program. */
 #pragma once
 #include <stddef.h>
 

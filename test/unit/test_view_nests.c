@@ -151,6 +151,52 @@ static void surfaces_meet_without_a_gap(void **state)
     tobi_moment_free(&m);
 }
 
+/* A pool, 8 layers deep and 16 wide, or twice as many. */
+static tobi_moment fill_pool(int finer)
+{
+    const int wide = 16*finer, deep = 8*finer;
+    tobi_moment m = { .count = (int64_t)wide*wide*deep };
+    m.positions = malloc((size_t)m.count*sizeof *m.positions);
+    for (int i = 0; i < m.count; i++)
+        for (int a = 0; a < 3; a++)
+            m.positions[i][a] = (i/(a == 0 ? 1 : a == 1 ? wide : wide*wide)%wide + 0.5)/wide;
+    return m;
+}
+
+static void see_from_above(const tobi_moment *m, int nests, uint8_t *rgb)
+{
+    static const double up[3] = { 0, 1, 0 };
+    tobi_drawing *d = draw(m, TOBI_LOOK_NATURAL, nests);
+    tobi_picture *p = tobi_drawing_picture(d);
+    p->dimension = 3, p->box_max[2] = 1, p->has_camera = 1, p->field_of_view = 30;
+    for (int a = 0; a < 3; a++) p->eye[a] = a < 2 ? 0.5 : 2.5, p->target[a] = 0.5, p->up[a] = up[a];
+    p->title = p->label = NULL, p->values = NULL, p->look = TOBI_LOOK_NATURAL;
+    OK(tobi_picture_draw(p, rgb, &err));
+    tobi_drawing_free(d);
+}
+
+/* Still water looks the same with a nest in its midst, but for a faint line. */
+static void water_shows_no_groove_around_a_nest(void **state)
+{
+    static uint8_t with[200*200*3], without[200*200*3];
+    const double box[2][3] = { { 0.3, 0.3, -INFINITY }, { 0.7, 0.7, INFINITY } };
+    int most = 0;
+    (void)state;
+    looks.box_max[2] = 1, looks.spacing = 1.0/16, looks.dimension = 3;
+    tobi_moment m = fill_pool(1), own = fill_pool(2);
+    OK(tobi_moment_add_nest(&m, &own, box, 1.0/32, &err));
+    see_from_above(&m, 1, with);
+    see_from_above(&m, 0, without);
+    for (int k = 0; k < 200*200*3; k++) {
+        const int differs = abs(with[k] - without[k]);
+        most = differs > most ? differs : most;
+    }
+    assert_in_range(most, 1, 60);      /* a groove differs by 135 */
+    looks.box_max[2] = 0, looks.spacing = 1.0/N, looks.dimension = 2;
+    tobi_moment_free(&own);
+    tobi_moment_free(&m);
+}
+
 static void boxes_go_along_with_bodies(void **state)
 {
     (void)state;
@@ -199,6 +245,7 @@ int main(void)
         cmocka_unit_test(particles_have_the_size_of_their_spacing),
         cmocka_unit_test(colors_end_at_what_is_shown),
         cmocka_unit_test(surfaces_meet_without_a_gap),
+        cmocka_unit_test(water_shows_no_groove_around_a_nest),
         cmocka_unit_test(boxes_go_along_with_bodies), cmocka_unit_test(without_memory_nothing_is_added),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
