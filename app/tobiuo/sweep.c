@@ -150,7 +150,8 @@ static int check_runs(const sweep *s)
             overrides_add(&set, "%s=%s", s->axes[k].path, sweep_value(s, run, k));
         tobi_scene *scene = load_scene(s->scene, &set);
         char *name = sweep_name(s, run);
-        code = scene ? 0 : complain("run %d of %d, %s, cannot be; nothing has been run", run, s->runs, name);
+        if (scene && run == 0 && s->waves) code = sweep_check_waves(s, scene);
+        if (!scene) code = complain("run %d of %d, %s, cannot be; nothing has been run", run, s->runs, name);
         free(name);
         tobi_scene_free(scene);
     }

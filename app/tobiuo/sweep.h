@@ -49,3 +49,6 @@ void sweep_put_cell(FILE *out, const char *text);
 /* sweep_waves.c: tobiuo waves of all complete runs: sweep_waves.csv, sweep_wave_groups.csv and
    sweep_wave_responses.csv. The exit code of the worst. */
 int sweep_analyse_waves(const sweep *s);
+/* Before the runs: whether tobiuo waves knows these options, and the scene the gauges. Leaves with the
+   message of tobiuo waves if it knows an option not. */
+int sweep_check_waves(const sweep *s, const tobi_scene *scene);

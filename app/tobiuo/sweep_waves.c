@@ -2,6 +2,7 @@
    Drawback: the words of --waves are parted at spaces, so that none may hold one. */
 #define _GNU_SOURCE
 #include "sweep.h"
+#include "waves.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <spawn.h>
@@ -121,6 +122,52 @@ static int collect(const sweep *s, const char *file)
     if (!code && begun) printf("%s\n", path);
     free(path);
     free(text);
+    return code;
+}
+
+static int has_level(const json_t *scene, const char *name, size_t length)
+{
+    size_t k;
+    const json_t *probe;
+    json_array_foreach(json_object_get(scene, "probes"), k, probe) {
+        const char *own = json_string_value(json_object_get(probe, "name")),
+                   *kind = json_string_value(json_object_get(probe, "kind"));
+        if (own && kind && strlen(own) == length && strncmp(own, name, length) == 0 &&
+            strcmp(kind, "level") == 0) return 1;
+    }
+    return 0;
+}
+
+static int check_gauges(const wave_options *o, const json_t *scene)
+{
+    for (int k = 0; k < o->group_count; k++)
+        for (const char *at = o->groups[k];; at++) {
+            const size_t length = strcspn(at, ",");
+            if (!has_level(scene, at, length))
+                return complain("--gauges %s: there is no sensor '%.*s' of the kind level", o->groups[k],
+                                (int)length, at);
+            at += length;
+            if (!*at) break;
+        }
+    return 0;
+}
+
+int sweep_check_waves(const sweep *s, const tobi_scene *scene)
+{
+    char *words = strdup(s->waves), *rest = words, *word, *text = tobi_scene_resolved(scene);
+    wave_options o = { .format = "svg" };
+    overrides a = { 0 };
+    if (!words || !text) exit(complain("out of memory"));
+    overrides_add(&a, "tobiuo waves");
+    while ((word = strsep(&rest, " "))) if (*word) overrides_add(&a, "%s", word);
+    overrides_add(&a, "%s", s->dir);
+    parse_arguments(&waves_argp, (int)a.count, a.text, &o);
+    json_t *json = json_loads(text, 0, NULL);
+    const int code = json ? check_gauges(&o, json) : 0;
+    json_decref(json);
+    overrides_free(&a);
+    free(text);
+    free(words);
     return code;
 }
 

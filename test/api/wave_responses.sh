@@ -113,6 +113,10 @@ cat > small.json <<'JSON'
   "output": { "interval": 0.05 } }
 JSON
 sweep="sweep small.json --out swept --set frame.surge.period=0.9,1.2"
+expect 2 "unrecognized option '--gages'" $sweep --waves "--gages G1,G2"
+expect 2 "--from: 'x' is not a number from 0 on" $sweep --waves "--from x"
+expect 1 "--gauges G1,G9: there is no sensor 'G9' of the kind level" $sweep --waves "--gauges G1,G9"
+check "such options are told before the runs" test ! -e swept
 expect 0 "note: --response: 5 periods of the waves; gains" $sweep --waves "--from 1.2 --response raft"
 check "a note has the name of its run" grep -q "^period=1.2: tobiuo: note: --response" err.txt
 check "a row for each gauge of each run" test "$(cut -d, -f1-3 swept/sweep_waves.csv | paste -sd ' ')" = \
