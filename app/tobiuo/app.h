@@ -260,6 +260,8 @@ typedef struct nest_results nest_results;
 nest_results *open_nests(const tobi_scene *scene, const char *dir);
 void add_nests(nest_results *nests, const tobi_looks *looks, tobi_moment *moment);
 void close_nests(nest_results *nests);
+/* A nest has the colours of the run around it. 0, or an exit code after a complaint. */
+int take_outer_colors(const nest_results *nests, tobi_looks *looks);
 /* draw.c: draws from the results of the run in dir, with values of its scene changed, the pictures that
    folder/frames lacks. Returns the exit code. */
 int draw_missing(const char *dir, const char *view, const overrides *set, const char *folder);

@@ -125,6 +125,7 @@ static int open_source(source *s, const char *dir, const char *view, const overr
     if (code == 0) code = find_view(s, dir, view);
     if (code == 0 && tobi_results_open(dir, &s->results, &err) != TOBI_OK) code = complain("%s", err.text);
     if (code == 0 && s->view->nests) s->nests = open_nests(s->scene, dir);
+    if (code == 0) code = take_outer_colors(s->nests, &s->looks);
     return code;
 }
 

@@ -42,6 +42,16 @@ static void find_self(nest_results *n)
     free(run);
 }
 
+int take_outer_colors(const nest_results *n, tobi_looks *looks)
+{
+    tobi_looks outer = { 0 };
+    if (!n || !n->self) return 0;
+    const int code = find_looks(n->outer, &outer);
+    if (code == 0) looks->speed = outer.speed;
+    tobi_looks_free(&outer);
+    return code;
+}
+
 nest_results *open_nests(const tobi_scene *scene, const char *dir)
 {
     nest_results *n = calloc(1, sizeof *n);

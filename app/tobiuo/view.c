@@ -47,6 +47,7 @@ static window_def make_window(const tobi_scene *scene, const tobi_looks *looks, 
         d.eye[k] = out->view.position[k];
         d.target[k] = out->view.look_at[k];
     }
+    d.alone = !out->view.nests;
     d.angle = looks->dimension == 3 ? out->view.angle : 0;
     return d;
 }
@@ -128,13 +129,15 @@ int tobiuo_view(int argc, char **argv)
         tobi_scene_free(scene);
         return code;
     }
+    nest_results *nests = open_nests(scene, o.dir);
+    code = take_outer_colors(nests, &looks);
     window_def d = make_window(scene, &looks, o.dir, o.dir);
-    d.nests = open_nests(scene, o.dir);
+    d.nests = nests;
     d.keys = o.keys;
     d.width = o.width;
     d.height = o.height;
-    code = window_show(&d) == 0 ? 0 : EXIT_ERROR;
-    close_nests(d.nests);
+    if (code == 0 && window_show(&d) != 0) code = EXIT_ERROR;
+    close_nests(nests);
     tobi_looks_free(&looks);
     tobi_scene_free(scene);
     return code;

@@ -200,7 +200,7 @@ static int is_stopped(const viewer *v)
 int window_show(const window_def *def)
 {
     viewer v = { .def = *def, .factor = 4, .dirty = 1, .changed = 1, .keys = def->keys, .graph_number = 0,
-                 .picks = { -1, -1 }, .look = { .clip_axis = -1 } };
+                 .picks = { -1, -1 }, .look = { .clip_axis = -1, .alone = def->alone } };
     const int code = open_viewer(&v);
     if (code == 0) viewer_note(&v, "h: keys");
     while (code == 0 && !v.ends && !is_stopped(&v)) turn(&v);

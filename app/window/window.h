@@ -8,6 +8,7 @@ typedef struct window_def {
     const char *title, *dir;            /* of the results; pictures and movies of the window go there too */
     tobi_looks looks;                   /* the caller's                                             */
     struct nest_results *nests;         /* the caller's, or NULL                                    */
+    int alone;                          /* 1: at first the scene alone is shown                     */
     double up[3];                       /* against gravity                                          */
     double eye[3], target[3], angle;    /* the camera of the scene; angle 0: a view that fits             */
     const char *keys; /* typed at the start, each when the picture before is there; or NULL */

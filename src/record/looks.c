@@ -190,7 +190,8 @@ tobi_status tobi_world_looks(const tobi_world *w, tobi_looks *looks, tobi_error 
     const size_t materials = (size_t)tobi_world_first_material(w, w->system + w->system_count);
     tobi_record_name *body, *traction, *line;
     *looks = (tobi_looks){ .dimension = def->dimension, .threads = w->sim.exec.threads };
-    TOBI_TRY(tobi_world_expected_speed(w, &looks->speed, err));
+    /* A nest has the colours of the world around it. */
+    TOBI_TRY(tobi_world_expected_speed(w->outer ? w->outer : w, &looks->speed, err));
     for (int k = 0; k < w->system_count; k++)
         looks->spacing = fmax(looks->spacing, tobi_world_spacing(w, &w->system[k]));
     looks->rim = tobi_nest_rim(&w->system[0]);

@@ -178,15 +178,14 @@ check "but earlier" test ! -s err.txt
 expect 0 "" picture whole_isph/nests/end --out own.png
 expect 0 "" picture alone --out rim.png
 check "a picture of a nest has no rim" test "$(cmp -s own.png rim.png; echo $?)" = 1
-expect 0 "" run tank.json --out drawn --quiet --frames --until 0.1 --set output.picture.look=particles
+expect 0 "" run tank.json --out drawn --quiet --frames --until 0.1
 for results in drawn drawn/nests/end drawn/nests/buoy; do
     for k in 0 1; do
         expect 0 "" picture $results --output $k --out r.png
         check "$results: the run draws the same picture $k" cmp r.png $results/frames/frame_00000$k.png
     done
 done
-expect 0 "" run tank.json --out one --quiet --frames --until 0.01 --set output.picture.look=particles \
-    --set output.picture.nests=false
+expect 0 "" run tank.json --out one --quiet --frames --until 0.01 --set output.picture.nests=false
 check "or the scene alone" test "$(cmp -s drawn/frames/frame_000000.png one/frames/frame_000000.png; echo $?)" = 1
 
 # In a nest a body with a program goes as in the scene, and its scene is one that can be read.
