@@ -68,7 +68,7 @@ static void lift(tobi_system *s)
     double t[TOBI_TOTALS];
     s->sim->nest.lift = 0;
     if (!sph_of(outer)->full) return;
-    tobi_launch(&s->sim->exec, TOBI_HOST(find_suction, 0, 1), outer, 0, outer->particles.count, t);
+    tobi_launch(&outer->sim->exec, TOBI_HOST(find_suction, 0, 1), outer, 0, outer->particles.count, t);
     s->sim->nest.lift = LIFT*(t[6] + s->fluid[0].density*outer->info.speed_max*outer->info.speed_max);
 }
 

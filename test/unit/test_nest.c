@@ -289,6 +289,26 @@ static void suction_opens_no_void(void **state)
     tobi_world_destroy(outer);
 }
 
+/* Sums over the outer particles need room for more blocks than those of the nest have; builds with assertions
+   look. */
+static void a_small_nest_in_a_large_world(void **state)
+{
+    (void)state;
+    const pool p = { 2, 1, 2, 1, 0, 0.5, 0, 1 };
+    tobi_world *outer = make_pool(&p, "dfsph", 0.0125), *nest = make_pool(&p, "dfsph", 0.00625);
+    const tobi_nest_def n = make_box(0.9, 0.4, 1.0, 0.5);
+    OK(tobi_world_nest(nest, outer, &n, &err));
+    OK(tobi_world_start(nest, &err));
+    assert_true(tobi_world_count(nest, TOBI_FLUID) < 4096);
+    OK(tobi_world_start(outer, &err));
+    assert_true(tobi_world_count(outer, TOBI_FLUID) > 2*4096);
+    advance(outer, nest, 0.005);
+    for (int64_t i = 0; i < nest->system[0].particles.count; i++)
+        assert_true(fabs(nest->system[0].particles.velocity[i].x - 0.5) < 1e-3);
+    tobi_world_destroy(nest);
+    tobi_world_destroy(outer);
+}
+
 static tobi_status try_nest(tobi_world *nest, tobi_world *outer, tobi_nest_def n, tobi_error *err)
 {
     return tobi_world_nest(nest, outer, &n, err);
@@ -372,7 +392,8 @@ int main(void)
         cmocka_unit_test(as_much_comes_in),
         cmocka_unit_test(liquid_that_gains_speed_is_not_pushed), cmocka_unit_test(a_box_goes_along),
         cmocka_unit_test(a_body_goes_as_outside), cmocka_unit_test(what_is_refused),
-        cmocka_unit_test(openings_stay_outside), cmocka_unit_test(suction_opens_no_void)
+        cmocka_unit_test(openings_stay_outside), cmocka_unit_test(suction_opens_no_void),
+        cmocka_unit_test(a_small_nest_in_a_large_world)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
