@@ -2,7 +2,7 @@
 #pragma once
 #include "picture.h"
 
-enum { PLOT_CURVES = 8, PLOT_SUM = 4 };
+enum { PLOT_CURVES = 9, PLOT_SUM = 4 };
 
 typedef struct curve_row {
     const char *label, *column;

@@ -37,6 +37,7 @@ const picture_row plot_history[] = {
             { TEXT("given by buoyancy"), "buoyancy_work", NULL, CURVE_LINE, 5, "buoyancy_work", NULL },
             { TEXT("given by air resistance"), "air_work", NULL, CURVE_LINE, 6, "air_work", NULL },
             { TEXT("given by the frame"), "field_work", NULL, CURVE_LINE, 7, "field_work", NULL },
+            { TEXT("given by nests"), "nest_work", NULL, CURVE_DASHED, 1, "nest_work", NULL },
             { TEXT("given by forces"), "force_work", NULL, CURVE_LINE, 3, "force_work", NULL } } } } },
     { "work", TEXT("Work on solids, and where it goes"), 1, {
         { TEXT("work"), "J", 0, 1, 0, 0, 0,

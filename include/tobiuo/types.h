@@ -578,7 +578,7 @@ typedef struct tobi_body_energy {
     double contact_power;         /* W, by bodies and sides that touch it                             */
     double motion_power;          /* W, by its motion: -power; of a swimmer by its change of shape    */
     double force_power;           /* W, by its constant force and torque and its control program      */
-    double air_power;             /* W, by its air resistance: below 0                                */
+    double air_power, nest_power; /* W, by its air resistance; by nest_force of bodies.csv            */
     double field_power;           /* W, by a frame that moves, gravity in time, a central force       */
 } tobi_body_energy;
 
@@ -589,7 +589,7 @@ typedef struct tobi_energy {
     double motion_power;          /* W, that motions of bodies give, of swimmers by their shapes       */
     double joint_power;           /* W, that dampers and motors of joints take from the bodies        */
     double line_power;            /* W, that damping of lines takes from them                         */
-    double force_power, air_power, field_power;     /* W, of all bodies, as above                     */
+    double force_power, air_power, field_power, nest_power;    /* W, of all bodies, as above          */
     double porous_power;          /* W, that porous zones take from liquids                           */
     double buoyancy_power;        /* W, that weight by temperature and concentration gives them       */
 } tobi_energy;

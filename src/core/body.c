@@ -158,6 +158,17 @@ tobi_status tobi_body_locate(const tobi_body *b, double t, int64_t n, const doub
     return TOBI_OK;
 }
 
+tobi_status tobi_body_locate_start(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
+                                   double (*out)[3], tobi_error *err)
+{
+    const tobi_swimmer *w = b->swimmer;
+    if (b->steer) b->steer(b->motion_user, w->start.steer);
+    TOBI_TRY(tobi_body_ask_motion(b, t, n, rest, out, err));
+    pose_points(b, w->start.centre, w->start.position, w->start.orientation, n, (const double (*)[3])out,
+                out);
+    return TOBI_OK;
+}
+
 /* Vertices at t relative to the box. */
 static tobi_status move_vertices(const tobi_body *b, double t, double (*out)[3], tobi_error *err)
 {

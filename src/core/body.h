@@ -42,9 +42,10 @@ enum { TOBI_DRY, TOBI_WET, TOBI_WET_GAP, TOBI_BURIED };
 #define TOBI_THICK 1.8
 
 /* What does work on a body: fluids and solids; what touches it; its motion; its force, torque and control
-   program; its air resistance; what acts besides gravity. Run states have them by their numbers. */
+   program; its air resistance; what acts besides gravity; the finer liquid of a nest. Run states have them
+   by their numbers. */
 enum { TOBI_BY_PARTICLES, TOBI_BY_CONTACT, TOBI_BY_MOTION, TOBI_BY_FORCE, TOBI_BY_AIR, TOBI_BY_FIELD,
-       TOBI_POWERS };
+       TOBI_BY_NEST, TOBI_POWERS };
 
 typedef struct tobi_body {
     char name[64];
@@ -159,6 +160,9 @@ void tobi_body_pose_shape(const tobi_body *b, int64_t n, double (*at)[3]);
    present pose has them. World coordinates. */
 tobi_status tobi_body_locate(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
                              double (*out)[3], tobi_error *err);
+/* The same of a swimmer, where they were when the last step began, at t. */
+tobi_status tobi_body_locate_start(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
+                                   double (*out)[3], tobi_error *err);
 /* Moves the body's own particles to time t, for output. */
 tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err);
 /* Evaluates the motion at t + dt: `next` and the mean velocities of the step, (next - vertex)/dt in

@@ -4,8 +4,17 @@
 #include "geom/vec3.h"
 #include <string.h>
 
+static void keep_pose(tobi_swimmer *w, const tobi_rigid *r)
+{
+    memcpy(w->start.centre, w->centre, sizeof w->centre);
+    memcpy(w->start.steer, w->steer, sizeof w->steer);
+    memcpy(w->start.position, r->position, sizeof r->position);
+    memcpy(w->start.orientation, r->orientation, sizeof r->orientation);
+}
+
 void tobi_body_clear_loads(tobi_body *b)
 {
+    if (b->swimmer) keep_pose(b->swimmer, &b->rigid);
     memset(b->load, 0, sizeof b->load);
     memcpy(b->start, b->rigid.velocity, sizeof b->rigid.velocity);
     memcpy(b->start + 3, b->rigid.angular_velocity, sizeof b->rigid.angular_velocity);
@@ -80,6 +89,7 @@ void tobi_body_find_power(tobi_body *b, double dt)
     b->power[TOBI_BY_MOTION] = driven ? -by_particles : b->swimmer ? find_swimming(b, shape, dt) : 0;
     b->power[TOBI_BY_FORCE] = vec3_dot(b->rigid.given, mean) + vec3_dot(b->rigid.given + 3, mean + 3);
     b->power[TOBI_BY_AIR] = vec3_dot(b->rigid.air, mean) + vec3_dot(b->rigid.air + 3, mean + 3);
+    b->power[TOBI_BY_NEST] = vec3_dot(b->rigid.finer, mean) + vec3_dot(b->rigid.finer + 3, mean + 3);
     b->power[TOBI_BY_FIELD] = vec3_dot(b->rigid.inertial, mean) + vec3_dot(b->rigid.inertial + 3, mean + 3);
 }
 

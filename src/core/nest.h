@@ -11,6 +11,7 @@ typedef struct tobi_nest {
     double lift;                     /* Pa: that the nest's pressures are higher by                     */
     double rim;                      /* m: how far the rim reaches beyond the box                       */
     double start[2][3];              /* m: the corners at time 0                                        */
+    int number;                      /* among the nests of the outer world, from 1                      */
     int body;                        /* of the outer world, that the box goes along with; -1: it stays  */
     double middle[3];                /* m: where the middle of that body was at time 0                  */
 } tobi_nest;

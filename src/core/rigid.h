@@ -47,6 +47,9 @@ typedef struct tobi_rigid {
     double given[6];                 /* N, N m about the centre: by force, torque and control program, in the
                                         last step                                                       */
     double air[6];                   /* N, N m about the centre: of air resistance in the last step     */
+    double finer[6];                 /* N, N m about the centre: what a nest's liquid has more than the one
+                                        here, since that nest was last stepped                          */
+    int finer_by;                    /* the number of that nest, from 1; 0 = none                       */
     int deforms;                     /* 1: a swimmer, which drifts by `moments`                         */
     double moments[3][3];            /* kg m2, rest axes: sum of m y0 y1^T, places about the centre at both
                                         ends of the step                                                */

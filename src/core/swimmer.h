@@ -22,6 +22,7 @@ typedef struct tobi_swimmer {
     double still[3][3];              /* what turns the motion's axes to the world's at the end of the step,
                                         where the body has no momentum                             */
     double steer[3], next_steer[3];  /* of the present shape; of the next, by the control program  */
+    struct { double centre[3], position[3], orientation[4], steer[3]; } start;      /* when the step began */
     double least_inertia;            /* kg m2: less is that of no body                             */
     int dimension;
 } tobi_swimmer;

@@ -119,7 +119,8 @@ typedef struct tobi_method {
     double density_ratio;                                        /* largest over least of its fluids */
     int packs_lists;                             /* 1: neighbours are 16 bits, half the memory      */
     int fills_pipes;                             /* 1: inlets and outlets may leave no free surface */
-    int nests;                                   /* 1: a world of it may be a nest                  */
+    int nests;                                   /* 1: a world of it may be a nest; 2: one that moves
+                                                    bodies                                          */
     int damps_waves;                             /* 1: waves lose height on the way                  */
     int rough_forces;                            /* 1: of a liquid on bodies and on solids they are not the
                                                     opposite of what the liquid feels, to a few per cent */

@@ -119,6 +119,11 @@
       "Done on bodies since the start by what acts besides gravity: a frame that moves, gravity in time, a " \
       "central force; where there is any.")
 
+#define HISTORY_NEST(H) \
+    H("nest_work", "J", real, tobi_works_bodies(run, TOBI_BY_NEST), \
+      "Done on bodies since the start by what nests press them with more than the liquid here; where nests " \
+      "move bodies.")
+
 /* B(name, unit, value, meaning): bodies.csv after time and name, all real; V3 for a vector. An empty meaning:
    that of the column before. Means are over the time since the last output. */
 #define V3(B, name, unit, v, doc) \
@@ -163,7 +168,8 @@
     B("force_work", "J", work[TOBI_BY_FORCE], \
       "Done on it by force and torque of the scene and by those of its control program since the start.")
 
-/* The last columns of bodies.csv: those of 2-D, those of air resistance, those of a frame and the like. */
+/* The last columns of bodies.csv: those of 2-D, those of air resistance, those of a frame and the like, those
+   of nests. */
 #define BODY_2D(B) \
     B("angle", "degrees", run->works.angle[k]*180/acos(-1), \
       "Turn since the rest pose, counterclockwise, with whole turns; in 2-D.")
@@ -174,6 +180,12 @@
     B("field_work", "J", work[TOBI_BY_FIELD], \
       "Done on it since the start by a frame that moves, gravity in time and a central force; where there " \
       "is any.")
+#define BODY_NEST(B) \
+    V3(B, "nest_force", "N", finer, \
+       "What a nest pressed it with in the last step, less pressure_force and viscous_force; it moves the " \
+       "body too; where nests move bodies.") \
+    V3(B, "nest_torque", "N m", (finer + 3), "About the centre of mass, of nest_force.") \
+    B("nest_work", "J", work[TOBI_BY_NEST], "Done on it by nest_force and nest_torque since the start.")
 
 /* S(name, unit, value, meaning): solids.csv after time and name, likewise. */
 #define SOLID(S) \

@@ -82,12 +82,12 @@ tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continue
 
 #define H(name, unit, kind, value, doc) { name, NULL },
 static const tobi_csv_column history_columns[] = {
-    HISTORY(H) HISTORY_POROUS(H) HISTORY_BUOYANCY(H) HISTORY_AIR(H) HISTORY_FIELD(H) };
+    HISTORY(H) HISTORY_POROUS(H) HISTORY_BUOYANCY(H) HISTORY_AIR(H) HISTORY_FIELD(H) HISTORY_NEST(H) };
 enum { HISTORY_COLUMNS = sizeof history_columns/sizeof *history_columns };
 #undef H
 #define B(name, unit, value, doc) { name, NULL },
 static const tobi_csv_column body_columns[] = {
-    { "time", NULL }, { "name", NULL }, BODY(B) BODY_2D(B) BODY_AIR(B) BODY_FIELD(B) };
+    { "time", NULL }, { "name", NULL }, BODY(B) BODY_2D(B) BODY_AIR(B) BODY_FIELD(B) BODY_NEST(B) };
 enum { BODY_COLUMNS = sizeof body_columns/sizeof *body_columns };
 #undef B
 
@@ -97,12 +97,12 @@ static const tobi_csv_column solid_columns[] = { { "time", NULL }, { "name", NUL
 
 #define H(name, unit, kind, value, doc) { name, unit, doc },
 static const tobi_column history[] = {
-    HISTORY(H) HISTORY_POROUS(H) HISTORY_BUOYANCY(H) HISTORY_AIR(H) HISTORY_FIELD(H) };
+    HISTORY(H) HISTORY_POROUS(H) HISTORY_BUOYANCY(H) HISTORY_AIR(H) HISTORY_FIELD(H) HISTORY_NEST(H) };
 #undef H
 #define B(name, unit, value, doc) { name, unit, doc },
 static const tobi_column body[] = {
     { "time", "s", "Simulated time." }, { "name", "text", "Name of the body." }, BODY(B)
-    BODY_2D(B) BODY_AIR(B) BODY_FIELD(B) };
+    BODY_2D(B) BODY_AIR(B) BODY_FIELD(B) BODY_NEST(B) };
 #undef B
 #define S(name, unit, value, doc) { name, unit, doc },
 static const tobi_column solid[] = {
@@ -184,26 +184,33 @@ static bool has_air(const tobi_run *run)
     return has;
 }
 
-static bool has_field(const tobi_run *run)
+static bool has_moving(const tobi_run *run)
 {
-    bool moves = false;
-    for (int k = 0; k < tobi_world_body_count(run->world); k++)
-        moves |= run->world->sim.bodies[k].rigid.kind != TOBI_PRESCRIBED;
-    return run->world->drive && moves;
+    return tobi_body_any_free(run->world->sim.bodies, run->world->sim.body_count);
+}
+
+static bool has_field(const tobi_run *run) { return run->world->drive && has_moving(run); }
+
+static bool has_nests(const tobi_run *run)
+{
+    return run->world->sim.nest_count > 0 && run->world->system[0].method->nests > 1 && has_moving(run);
 }
 
 /* The last columns are of worlds that have what they tell. */
-typedef bool has_column(const tobi_run *run);
-static has_column *const history_has[] = { has_zones, has_buoyancy, has_air, has_field };
-static has_column *const body_has[] = { is_flat, has_air, has_field };
+typedef struct of_some { bool (*has)(const tobi_run *run); int columns; } of_some;
+static const of_some history_of_some[] = {
+    { has_zones, 1 }, { has_buoyancy, 1 }, { has_air, 1 }, { has_field, 1 }, { has_nests, 1 } };
+static const of_some body_of_some[] = { { is_flat, 1 }, { has_air, 1 }, { has_field, 1 }, { has_nests, 7 } };
 
-static int choose_columns(const tobi_run *run, const tobi_csv_column *all, int count,
-                          has_column *const *has, int last, tobi_csv_column *out)
+static int choose_columns(const tobi_run *run, const tobi_csv_column *all, int count, const of_some *some,
+                          int kinds, tobi_csv_column *out)
 {
-    int chosen = count - last;
+    int chosen = count, at;
+    for (int k = 0; k < kinds; k++) chosen -= some[k].columns;
+    at = chosen;
     memcpy(out, all, (size_t)chosen*sizeof *out);
-    for (int k = 0; k < last; k++)
-        if (has[k](run)) out[chosen++] = all[count - last + k];
+    for (int k = 0; k < kinds; at += some[k++].columns)
+        for (int c = 0; c < some[k].columns && some[k].has(run); c++) out[chosen++] = all[at + c];
     return chosen;
 }
 
@@ -211,10 +218,10 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
 {
     const double last = continued ? tobi_record_time(run, run->outputs - 1) : 0;
     tobi_csv_column of_run[HISTORY_COLUMNS], of_bodies[BODY_COLUMNS];
-    const int of_history = choose_columns(run, history_columns, HISTORY_COLUMNS, history_has,
-                                          sizeof history_has/sizeof *history_has, of_run);
-    const int each = choose_columns(run, body_columns, BODY_COLUMNS, body_has,
-                                    sizeof body_has/sizeof *body_has, of_bodies);
+    const int of_history = choose_columns(run, history_columns, HISTORY_COLUMNS, history_of_some,
+                                          sizeof history_of_some/sizeof *history_of_some, of_run);
+    const int each = choose_columns(run, body_columns, BODY_COLUMNS, body_of_some,
+                                    sizeof body_of_some/sizeof *body_of_some, of_bodies);
     TOBI_TRY(tobi_table_open(run, "history.csv", continued, last, of_run, of_history, &run->history, err));
     if (tobi_world_body_count(run->world) > 0)
         TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, last, of_bodies, each, &run->bodies, err));
@@ -234,7 +241,7 @@ static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *e
         tobi_body_info b;
         TOBI_TRY(tobi_world_body(run->world, k, &b));
         const tobi_body_tally m = mean_of_body(&run->body_since[k]);
-        const double *work = run->works.body[k];
+        const double *work = run->works.body[k], *finer = run->world->sim.bodies[k].rigid.finer;
         tobi_body_energy e;
         TOBI_TRY(tobi_world_body_energy(run->world, k, &e));
         tobi_csv_add_real(run->bodies, tobi_world_time(run->world));
@@ -244,6 +251,7 @@ static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *e
         if (is_flat(run)) { BODY_2D(B) }
         if (has_air(run)) { BODY_AIR(B) }
         if (has_field(run)) { BODY_FIELD(B) }
+        if (has_nests(run)) { BODY_NEST(B) }
 #undef B
         TOBI_TRY(tobi_csv_take_row(run->bodies, rows, err));
     }
@@ -284,6 +292,7 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
     if (has_buoyancy(run)) { HISTORY_BUOYANCY(H) }
     if (has_air(run)) { HISTORY_AIR(H) }
     if (has_field(run)) { HISTORY_FIELD(H) }
+    if (has_nests(run)) { HISTORY_NEST(H) }
 #undef H
     return tobi_csv_take_row(run->history, &snapshot->history, err);
 }

@@ -95,6 +95,8 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
     memcpy(r->given + 3, torque, sizeof torque);
     vec3_add_scaled(force, force, 1, r->inertial);
     vec3_add_scaled(torque, torque, 1, r->inertial + 3);
+    vec3_add_scaled(force, force, 1, r->finer);
+    vec3_add_scaled(torque, torque, 1, r->finer + 3);
     tobi_line_load now = { 0 }, mean = { 0 };
     double impulse[6];
     const int body = (int)(b - d->bodies);
@@ -472,4 +474,15 @@ void tobi_rigid_set_force(tobi_dynamics_state *d, int body, const double force[3
     change_pull(d, r, d->world.gravity, force, torque);
     memcpy(r->force, force, sizeof r->force);
     memcpy(r->torque, torque, sizeof r->torque);
+}
+
+void tobi_rigid_set_finer(tobi_dynamics_state *d, int body, const double finer[6])
+{
+    tobi_rigid *r = &d->bodies[body].rigid;
+    const int held = is_held(d, r);
+    for (int a = 0; a < 3 && !held; a++) {
+        r->pull[a] += (finer[a] - r->finer[a])/r->mass;
+        r->pull_torque[a] += finer[3 + a] - r->finer[3 + a];
+    }
+    memcpy(r->finer, finer, sizeof r->finer);
 }

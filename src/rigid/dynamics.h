@@ -37,6 +37,8 @@ tobi_status tobi_rigid_step(tobi_dynamics_state *state, double t, double dt, tob
 void tobi_rigid_set_gravity(tobi_dynamics_state *state, const double gravity[3]);
 void tobi_rigid_set_force(tobi_dynamics_state *state, int body, const double force[3],
                           const double torque[3]);
+/* What a nest's liquid presses the body with more than the liquid here: force and torque about the centre. */
+void tobi_rigid_set_finer(tobi_dynamics_state *state, int body, const double finer[6]);
 /* The same gravity where the state is a checkpoint's, whose pull is of it already. */
 void tobi_rigid_restore_gravity(tobi_dynamics_state *state, const double gravity[3]);
 

@@ -74,14 +74,12 @@ static tobi_status lead_bodies(one_nest *o, const tobi_world *outer, tobi_error 
         tobi_body_def *b = &s->bodies[k].def;
         o->body[k] = (tobi_nest_body){ outer, k };
         if (b->dynamics == TOBI_PRESCRIBED && !tobi_motion_absorbs(s->bodies[k].motion_def)) continue;
-        if (b->dynamics != TOBI_PRESCRIBED && b->motion)
-            return tobi_fail(err, TOBI_UNSUPPORTED, "nest '%s': body '%s' swims; nests are for bodies that "
-                             "keep their shape or have a motion alone", o->name, b->name);
         tobi_body_def led = tobi_default_body_def();
         memcpy(&led, b, offsetof(tobi_body_def, motion));      /* shape and looks */
+        memcpy(led.centre_of_mass, b->centre_of_mass, sizeof led.centre_of_mass);      /* of torques */
         led.motion = tobi_nest_motion;
         led.motion_user = &o->body[k];
-        led.motion_rigid = 1;
+        led.motion_rigid = b->dynamics == TOBI_PRESCRIBED || !b->motion;
         *b = led;
         tobi_script_free(s->bodies[k].control);
         s->bodies[k].control = NULL;

@@ -114,6 +114,13 @@ static tobi_status put_place(const tobi_body *b, int k, tobi_store *f, tobi_erro
     return tobi_store_put(f, name, TOBI_F64, 4, 3, &place, err);
 }
 
+static tobi_status put_finer(const tobi_rigid *r, const char *name, tobi_store *f, tobi_error *err)
+{
+    double finer[7] = { [6] = r->finer_by };
+    memcpy(finer, r->finer, sizeof r->finer);
+    return tobi_store_put(f, name, TOBI_F64, 7, 1, finer, err);
+}
+
 static tobi_status put_body(tobi_body *b, int k, tobi_store *f, tobi_error *err)
 {
     double load[7] = { [6] = b->motion_set };
@@ -131,6 +138,8 @@ static tobi_status put_body(tobi_body *b, int k, tobi_store *f, tobi_error *err)
     tobi_world_name_body(k, "_memory", name);
     if (b->rigid.control)
         TOBI_TRY(tobi_store_put(f, name, TOBI_F64, TOBI_CONTROL_STATE, 1, b->rigid.memory, err));
+    tobi_world_name_body(k, "_nest", name);
+    if (b->rigid.finer_by) TOBI_TRY(put_finer(&b->rigid, name, f, err));
     tobi_world_name_body(k, "_edge", name);
     if (b->blade) TOBI_TRY(tobi_store_put(f, name, TOBI_F64, b->piece_count, 3, b->edge_share, err));
     return b->motion ? put_place(b, k, f, err) : TOBI_OK;

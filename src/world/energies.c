@@ -11,7 +11,8 @@ static tobi_body_energy find_energy(const tobi_world *w, const tobi_body *b)
 {
     tobi_body_energy e = { .power = b->power[TOBI_BY_PARTICLES], .contact_power = b->power[TOBI_BY_CONTACT],
                            .motion_power = b->power[TOBI_BY_MOTION], .force_power = b->power[TOBI_BY_FORCE],
-                           .air_power = b->power[TOBI_BY_AIR], .field_power = b->power[TOBI_BY_FIELD] };
+                           .air_power = b->power[TOBI_BY_AIR], .field_power = b->power[TOBI_BY_FIELD],
+                           .nest_power = b->power[TOBI_BY_NEST] };
     if (b->rigid.kind == TOBI_PRESCRIBED) return e;
     e.kinetic = tobi_rigid_kinetic_energy(&b->rigid);
     for (int a = 0; a < w->sim.def.dimension; a++)
@@ -30,6 +31,7 @@ void tobi_energy_sum_bodies(const tobi_world *w, tobi_energy *sum)
         sum->force_power += e.force_power;
         sum->air_power += e.air_power;
         sum->field_power += e.field_power;
+        sum->nest_power += e.nest_power;
     }
 }
 

@@ -12,6 +12,7 @@
 
 struct tobi_loaded_body {
     double state[TOBI_RIGID_DOUBLES];
+    double finer[7];                 /* and finer_by; 0 where no nest moves it                    */
     double load[7];                  /* N, N m: its constant force and torque; 1: its motion was set */
     tobi_body_info info;
     double (*vertex)[3], (*before)[3];   /* of a body with a motion, owned                        */
@@ -79,7 +80,11 @@ static tobi_status read_state(const tobi_body *b, int k, tobi_store *f, tobi_loa
     tobi_world_name_body(k, "_memory", name);
     if (b->rigid.control && tobi_store_has(f, name))         /* older ones have none */
         TOBI_TRY(tobi_store_get(f, name, TOBI_F64, TOBI_CONTROL_STATE, 1, l->memory, err));
-    int good = 1;
+    tobi_world_name_body(k, "_nest", name);
+    memset(l->finer, 0, sizeof l->finer);
+    if (tobi_store_has(f, name)) TOBI_TRY(tobi_store_get(f, name, TOBI_F64, 7, 1, l->finer, err));
+    int good = l->finer[6] >= 0 && l->finer[6] <= TOBI_NEST_LIMIT;
+    for (int i = 0; i < 7; i++) good &= isfinite(l->finer[i]) != 0;
     for (int i = 0; i < TOBI_CONTROL_STATE; i++) good &= isfinite(l->memory[i]) != 0;
     for (int i = 0; i < TOBI_RIGID_DOUBLES; i++) good &= isfinite(l->state[i]) != 0;
     for (int i = 0; i < 7; i++) good &= isfinite(l->load[i]) != 0;
@@ -202,13 +207,17 @@ static void take_edge(tobi_body *b, tobi_loaded_body *l)
     l->edge_foot = NULL;
 }
 
-static void take_body(tobi_body *b, tobi_loaded_body *l)
+/* nests: of the world now. */
+static void take_body(tobi_body *b, tobi_loaded_body *l, int nests)
 {
     tobi_rigid rigid = b->rigid;
     memcpy(TOBI_RIGID_STATE(&rigid), l->state, sizeof l->state);
     memcpy(rigid.memory, l->memory, sizeof rigid.memory);
     memcpy(rigid.force, l->load, sizeof rigid.force);
     memcpy(rigid.torque, l->load + 3, sizeof rigid.torque);
+    memcpy(rigid.finer, l->finer, sizeof rigid.finer);
+    rigid.finer_by = (int)l->finer[6];
+    if (rigid.finer_by > nests) memset(rigid.finer, 0, sizeof rigid.finer), rigid.finer_by = 0;
     rigid.phase = fmin(fmax(rigid.phase, -1e9), 1e9);
     rigid.hold = (int)fmin(fmax(rigid.hold, 0), 63) & 63;
     b->rigid = rigid;
@@ -233,7 +242,7 @@ tobi_status tobi_world_take_bodies(tobi_world *w, tobi_loaded_bodies *l, tobi_er
     if (w->dynamics) TOBI_TRY(tobi_rigid_set_warm(w->dynamics, l->contact_count, l->contacts, err));
     for (int k = 0; k < l->count; k++) {
         double *absorb = tobi_absorb_state(w, k);
-        take_body(&w->sim.bodies[k], &l->body[k]);
+        take_body(&w->sim.bodies[k], &l->body[k], w->sim.nest_count);
         if (absorb) memcpy(absorb, l->body[k].absorb, sizeof l->body[k].absorb);
     }
     tobi_absorb_restore(w);

@@ -104,6 +104,9 @@ static tobi_status check_worlds(const tobi_world *w, const tobi_world *outer, co
     for (int a = 0; a < in->dimension; a++)
         same &= in->domain_min[a] == out->domain_min[a] && in->domain_max[a] == out->domain_max[a];
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world becomes no nest");
+    if (outer->sim.nest_count == TOBI_NEST_LIMIT)
+        return tobi_fail(err, TOBI_INVALID, "nest '%s': a world has %d nests or fewer", def->name,
+                         TOBI_NEST_LIMIT);
     if (outer->sim.nest.outer)
         return tobi_fail(err, TOBI_UNSUPPORTED, "nest '%s': the outer world is a nest itself", def->name);
     if (!outer->system[0].method->nests)
@@ -201,10 +204,11 @@ tobi_status tobi_world_nest(tobi_world *w, tobi_world *outer, const tobi_nest_de
     TOBI_TRY(find_body(outer, def, &n, err));
     TOBI_TRY(check_periods(&n, box, def, err));
     TOBI_TRY(check_openings(outer, &n, def, err));
+    outer->sim.nest_spacing[outer->sim.nest_count++] = w->sim.def.spacing;
+    n.number = outer->sim.nest_count;
     w->sim.nest = n;
     w->outer = outer;
     tobi_nest_join(w);
-    outer->sim.has_nests = 1;
     w->feeds = def->feedback;
     return TOBI_OK;
 }
@@ -218,7 +222,7 @@ static void remember_range(const void *view, int64_t begin, int64_t end)
 tobi_status tobi_nest_remember(tobi_world *w, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
-    if (!s->has_nests) return TOBI_OK;
+    if (s->nest_count == 0) return TOBI_OK;
     if (s->next_id > s->before_room) {
         const int64_t room = s->next_id + s->next_id/2;
         tobi_float4 *more = realloc(s->before, (size_t)room*sizeof *more);
@@ -234,6 +238,7 @@ tobi_status tobi_world_feed(tobi_world *w, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);
     if (!w->outer) return tobi_fail(err, TOBI_INVALID, "the world is no nest, so that no other is fed by it");
+    tobi_nest_press(w, w->outer);
     if (!w->feeds || w->system[0].particles.count == 0) return TOBI_OK;
     sph_nest_feed(&w->system[0], &w->outer->system[0]);
     w->outer->fresh = 0;
@@ -250,6 +255,24 @@ void tobi_nest_follow(tobi_world *w)
     place(n, &w->system[0].box, way);
 }
 
+/* Of a swimmer: along the straight way from where a place was when the outer step began to where it is. */
+static tobi_status follow_swimmer(const tobi_simulation *s, const tobi_body *b, double t, int64_t n,
+                                  const double (*rest)[3], double (*position)[3], tobi_error *err)
+{
+    const double share = s->dt > 0 ? (t - s->time)/s->dt : 0;      /* -1 when it began */
+    TOBI_TRY(tobi_body_locate(b, s->time, n, rest, position, err));
+    if (!(share < 0)) return TOBI_OK;
+    double (*start)[3] = malloc((size_t)(n + 1)*sizeof *start), way[3];
+    if (!start) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a nest");
+    const tobi_status status = tobi_body_locate_start(b, s->time - s->dt, n, rest, start, err);
+    for (int64_t k = 0; k < n && status == TOBI_OK; k++) {
+        vec3_sub(way, position[k], start[k]);
+        vec3_add_scaled(position[k], position[k], share, way);
+    }
+    free(start);
+    return status;
+}
+
 tobi_status tobi_nest_motion(void *user, double t, int64_t n, const double (*rest)[3], double (*position)[3],
                              tobi_error *err)
 {
@@ -259,7 +282,7 @@ tobi_status tobi_nest_motion(void *user, double t, int64_t n, const double (*res
     const tobi_rigid *r = &b->rigid;
     const double late = t - s->time;
     double turn[3], orientation[4], m[3][3];
-    (void)err;
+    if (b->swimmer) return follow_swimmer(s, b, t, n, rest, position, err);
     memcpy(orientation, r->orientation, sizeof orientation);
     for (int a = 0; a < 3; a++) turn[a] = late*r->angular_velocity[a];
     tobi_quaternion_turn(orientation, turn);

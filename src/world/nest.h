@@ -18,7 +18,12 @@ int64_t tobi_nest_share(const tobi_world *w, int64_t particles);
 tobi_status tobi_nest_remember(tobi_world *w, tobi_error *err);
 /* Before a step of a nest: its box goes along with a body; pistons are where they are in the outer world. */
 void tobi_nest_follow(tobi_world *w);
-/* After it, nest_rim.c: liquid beyond the rim is removed, and the rim is filled where the outer world has
+/* After it, nest_forces.c: adds up what its liquid presses bodies with. TOBI_NO_MEMORY. */
+tobi_status tobi_nest_tally(tobi_world *w, tobi_error *err);
+/* When it has caught up with the outer world: what moves by forces there feels in the steps to come what the
+   nest pressed it with more, if all of it is in the box. */
+void tobi_nest_press(tobi_world *nest, tobi_world *outer);
+/* After a step, nest_rim.c: liquid beyond the rim is removed, and the rim is filled where the outer world has
    liquid and the nest has none. */
 tobi_status tobi_nest_pass(tobi_world *w, tobi_error *err);
 /* What survives a restart: which outer particles, by id, the nest has seen. After tobi_nest_get `seen` is the

@@ -502,6 +502,7 @@ uint64_t tobi_world_hash(tobi_world *w)
     for (int k = 0; k < w->sim.body_count; k++) {
         const tobi_rigid *r = &w->sim.bodies[k].rigid;
         if (r->kind != TOBI_PRESCRIBED) h = mix(h, TOBI_RIGID_STATE(r), TOBI_RIGID_DOUBLES*sizeof(double));
+        if (r->finer_by) h = mix(h, r->finer, sizeof r->finer);
         double kept = 0;        /* a body without a program has the hash that it always had */
         for (int n = 0; n < TOBI_CONTROL_STATE; n++) kept += fabs(r->memory[n]);
         if (kept > 0) h = mix(h, r->memory, sizeof r->memory);

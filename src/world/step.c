@@ -223,6 +223,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     TOBI_TRY(tobi_world_kick_bodies(w, err));
     for (int k = 0; k < s->body_count; k++) tobi_body_find_power(&s->bodies[k], s->dt);
     TOBI_TRY(tobi_openings_pass(w, err));
+    TOBI_TRY(tobi_nest_tally(w, err));
     TOBI_TRY(tobi_nest_pass(w, err));
     tobi_absorb_finish(w);
     tobi_step_sum_up(w);

@@ -103,6 +103,7 @@ void tobi_world_destroy(tobi_world *w)
     tobi_openings_free(w);
     free(w->lines);
     free(w->seen);
+    free(w->pressed);
     free(w->sim.before);
     tobi_constraints_free(&w->sim.constraints);
     tobi_motors_free(w);

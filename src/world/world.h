@@ -41,6 +41,8 @@ struct tobi_world {
     struct tobi_world *outer;      /* of a nest: whose liquid surrounds it; NULL                    */
     struct tobi_world *first_nest, *next_nest;      /* its own; of a nest: the next of the same world */
     int feeds;                     /* 1: that takes the nest's velocity                                */
+    double (*pressed)[6], pressed_for;      /* owned: N s, N m s on each body, and s, since it last moved the
+                                      outer bodies, nest_forces.c; NULL: it is none              */
     uint8_t *seen;                 /* owned: of outer particles by id, 1: in a nest; NULL: it is none  */
     int64_t seen_room;
     tobi_beyond *beyond;           /* owned: what lies beyond an outlet, backflow.c               */

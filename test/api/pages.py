@@ -60,7 +60,7 @@ def check_tables(program):
             with open(f"tables/{table}", newline="") as file:
                 written = next(csv.reader(file))
             of_some = ("porous_work", "buoyancy_work", "air_work", "field_work")
-            told = [name for name in told if name not in of_some]
+            told = [name for name in told if name not in of_some and not name.startswith("nest_")]
             if told != written:
                 print(f"{path}: columns of {table}:", set(told) ^ set(written))
                 failed += 1

@@ -338,7 +338,7 @@ class Module(unittest.TestCase):
             self.assertGreater(ball.position[2], 2.1)
             self.assertEqual(ball.inertia.shape, (3, 3))
             parts = {"kinetic", "potential", "power", "contact_power", "motion_power", "force_power", "air_power",
-                     "field_power"}
+                     "field_power", "nest_power"}
             self.assertEqual(set(ball.energy()), parts)
             with self.assertRaisesRegex(AttributeError, "position, orientation"):
                 ball.colour

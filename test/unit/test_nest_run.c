@@ -279,12 +279,6 @@ static void what_a_scene_may_not_have(void **state)
              "[0.1, 0.1], \"max\": [0.2, 0.16]}}]}], \"output\"");
     REFUSED(make_other("\"output\"", more, &a, &err), TOBI_UNSUPPORTED, "nests are for liquids alone");
     nest_rig_drop(&a);
-    write_file(at("swim.lua"), "function deform(x, y, z, t) return x, y + 0.001*math.sin(t)*x, z end");
-    snprintf(more, sizeof more, "\"bodies\": [{\"name\": \"eel\", \"dynamics\": \"free\", \"box\": "
-             "{\"min\": [0.1, 0.04], \"max\": [0.2, 0.08]}, \"motion\": {\"script\": \"%s\"}}], "
-             "\"output\"", at("swim.lua"));
-    REFUSED(make_other("\"output\"", more, &a, &err), TOBI_UNSUPPORTED, "body 'eel' swims");
-    nest_rig_drop(&a);
 }
 
 static void states_are_of_their_world(void **state)

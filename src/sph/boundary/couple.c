@@ -46,7 +46,7 @@ static void predict(const tobi_system *s, tobi_body *b, const double known[6])
 {
     tobi_rigid *r = &b->rigid;
     double shift[3], turn[3][3], momentum[3], f[6], keep = tobi_rigid_keep(r, s->dt);
-    memcpy(f, known, sizeof f);
+    for (int a = 0; a < 6; a++) f[a] = known[a] + r->finer[a];
     tobi_motors_add_guess(&s->sim->constraints, (int)(b - s->sim->bodies), f);
     if (r->joint.kind) {
         predict_joint(s, r, f);

@@ -481,7 +481,7 @@ const tobi_method tobi_isph = {
     .begin = isph_begin,
     .packs_lists = 1,          /* the matrix takes most of the time, and of the memory with the lists */
     .fills_pipes = 1,
-    .nests = 1,
+    .nests = 2,
     .rough_forces = 1,
     ISPH_VERBS
 };
