@@ -33,6 +33,7 @@ typedef struct plane {
     uint8_t *near;               /* of blocks of nodes                                      */
     int32_t *vertex;             /* of nodes inside, or -1                                  */
     float  behind;               /* m, depth of what is drawn: after bodies and solids      */
+    float  under;                /* m, likewise where another liquid is over it             */
 } plane;
 
 static int64_t node_at(const plane *p, int x, int y) { return (int64_t)y*p->size[0] + x; }
@@ -192,6 +193,7 @@ static int32_t add_vertex(const plane *p, geometry *g, double x, double y, vec c
 {
     const double at[3] = { p->low[0] + p->edge*x, p->low[1] + p->edge*y, 0 };
     g->place[g->vertices] = view_point(&p->c->camera, at);
+    g->place[g->vertices].z = beyond_nests(p, at) > 0 ? p->under : p->behind;
     g->normal[g->vertices] = (vec){ 0, 0, 0 };
     g->color[g->vertices] = color;
     return (int32_t)g->vertices++;
@@ -327,9 +329,11 @@ tobi_status view_add_region(geometry *g, const canvas *c, const surface_request 
     const int64_t vertex = g->vertices, face = g->faces;
     plane p = { .c = c, .r = r };
     p.behind = (r->cover ? 10 : 8)*(float)(f->box_max[0] - f->box_min[0] + f->box_max[1] - f->box_min[1]);
+    p.under = 1.001f*p.behind;
     bool enough = !place_nodes(&p) || make_region(&p, g);
     if (enough && r->skin) enough = view_put_skin(c, r, g, vertex, face);
-    for (int64_t i = vertex; i < g->vertices; i++) g->place[i].z = p.behind;
+    for (int64_t i = vertex; i < g->vertices; i++)
+        if (g->place[i].z != p.under) g->place[i].z = p.behind;
     if (enough) enough = add_discs(&p, g);
     free(p.node);
     free(p.count);
