@@ -253,6 +253,8 @@ struct surface_request {
     const vec *scale;            /* not NULL: x of a colour is a value, 0 to 1, on this scale      */
     segments *isolines;           /* gets lines at f->isolines values; NULL = none                  */
     segments *outline;           /* of regions: gets where they end                                */
+    const int32_t *liquid;       /* of regions: rows of all liquids, which part them; or NULL      */
+    int64_t liquids;
     const segments *cover;       /* of regions: what else is there, see COVERS; or NULL            */
     const tobi_picture_skin *skin;      /* not NULL: colours are what view_fit_rest finds      */
     const struct rest_map *map;  /* with a skin                                                    */

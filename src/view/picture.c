@@ -393,9 +393,11 @@ static tobi_status add_regions(scene *s, tobi_error *err)
         bool within;
         all.plain = view_color_of(f, 0);
         all.cover = opaque ? NULL : s->cover;
+        if (!opaque && f->group && !f->nest) all.liquid = s->row;
         for (int64_t i = 0; i < f->particle_count; i++)
             if (view_beyond(f, f->positions[i], 0.5*f->slice) <= 12*f->radius
                 && (f->opaque && f->opaque[i]) == opaque) s->row[all.count++] = (int32_t)i;
+        all.liquids = all.count;
         TOBI_TRY(add_groups(s, all, &s->solids, &s->solids, &within, err));
         for (int64_t k = 0; opaque && k < s->outline.count; k++)
             if (!view_add_segment(&s->cover[COVER_OPAQUE], s->outline.end[k][0], s->outline.end[k][1]))

@@ -25,6 +25,7 @@ typedef struct plane {
     int    size[2];              /* nodes                                                   */
     float  wall[2][2];           /* cells from the first node, of the domain                */
     float *node;                 /* sums: 1 inside                                          */
+    float *others;               /* of other liquids; NULL: there are none                  */
     vec   *color;                /* of nodes; the mean of those around, the nearest counts  */
     float *weight;               /* most by far. NULL: one colour for all                   */
     float *count;                /* of particles: what each counts; NULL: 1                 */
@@ -94,6 +95,30 @@ static void add_particle(plane *p, int64_t number)
             p->color[k] = vec_add(p->color[k], vec_scale(w, own));
             p->weight[k] += w;
         }
+}
+
+/* Sums of the liquids that are not this one. False: no memory. */
+static bool add_others(plane *p)
+{
+    const surface_request *r = p->r;
+    surface_request one = *r;
+    plane all = *p;
+    if (!r->liquid || r->liquids == r->count) return true;
+    all.node = p->others = calloc((size_t)p->size[0]*(size_t)p->size[1], sizeof *p->others);
+    if (!p->others) return false;
+    all.color = NULL;
+    all.r = &one;
+    one.row = r->liquid;
+    for (int64_t i = 0; i < r->liquids; i++)
+        if (!(r->liquid + i >= r->row && r->liquid + i < r->row + r->count)) add_particle(&all, i);
+    return true;
+}
+
+/* Where liquids meet, each has what it fills more of: no gap is between them, however loose they lie. */
+static void part_liquids(float *node, float others, float level)
+{
+    const float total = *node + others;
+    if (others > 0) *node = level + fminf(total - level, *node/total - 0.5f);
 }
 
 static float sum_per_particle(const plane *p)
@@ -174,6 +199,8 @@ static void limit_nodes(plane *p)
             }
             if (p->near && *near_at(p, m, n) && *node > 0) room -= cover_around(p, m, n);
             *node *= per_particle/fmaxf(room, least_room);
+            if (p->others)
+                part_liquids(node, p->others[node_at(p, m, n)]*per_particle/fmaxf(room, least_room), level);
             if (p->clear) most = fminf(most, level + 0.5f - p->clear[node_at(p, m, n)]);
             if (f->clip) most = fminf(most, level - 0.5f*(float)(view_beyond(f, x, 0.5*f->slice)/p->edge));
             if (f->nest) most = fminf(most, level - 0.5f*(beyond_nests(p, x) - 1));
@@ -315,7 +342,7 @@ static bool make_region(plane *p, geometry *g)
         }
         for (int64_t i = 0; enough && i < p->r->count; i++) add_particle(p, i);
     }
-    enough = enough && find_covers(p);
+    enough = enough && add_others(p) && find_covers(p);
     if (enough) limit_nodes(p);
     for (size_t k = 0; enough && k < n; k++) p->vertex[k] = -1;
     for (int y = 0; enough && y + 1 < p->size[1]; y++)
@@ -336,6 +363,7 @@ tobi_status view_add_region(geometry *g, const canvas *c, const surface_request 
         if (g->place[i].z != p.under) g->place[i].z = p.behind;
     if (enough) enough = add_discs(&p, g);
     free(p.node);
+    free(p.others);
     free(p.count);
     free(p.covered);
     free(p.clear);

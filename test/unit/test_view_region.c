@@ -128,6 +128,9 @@ static void test_flat_pictures(void **state)
 /* Water between walls on three sides, 0.6 m wide and 0.4 m high; one particle alone. */
 enum { ACROSS = 60, UP = 40, MANY = ACROSS*UP + 1 };
 
+/* m, between the halves, besides a spacing. */
+static double apart = 0;
+
 /* parts: each half is a group. */
 static void draw_parts(int look, int clip, int isolines, int parts, uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3])
 {
@@ -139,6 +142,7 @@ static void draw_parts(int look, int clip, int isolines, int parts, uint8_t rgb[
     tobi_picture p = tobi_default_picture();
     for (int i = 0; i < MANY - 1; i++) {
         place[i][0] = 0.01*(i%ACROSS + 0.5), place[i][1] = 0.01*(i/ACROSS + 0.5);
+        if (i%ACROSS >= ACROSS/2) place[i][0] += apart;
         value[i] = i%ACROSS >= ACROSS/2;
         group[i] = i%ACROSS >= ACROSS/2;
     }
@@ -199,6 +203,24 @@ static void test_regions(void **state)
     assert_int_not_equal(rgb[drop][across][0], rgb[drop - 20][across][0]);      /* a disc */
     draw_water(TOBI_LOOK_PARTICLES, 0, discs);
     assert_memory_not_equal(rgb, discs, sizeof rgb);
+}
+
+/* Two liquids that lie loosely: nothing of the background is seen between them. */
+static void test_no_gap_between_liquids(void **state)
+{
+    (void)state;
+    static uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3];
+    const int middle = (int)(FLAT_SIDE*(0.5 + 0.92*0.3));
+    int ends[2] = { 0, 0 };
+    apart = 0.01;
+    draw_parts(TOBI_LOOK_NATURAL, 0, 0, 1, rgb);
+    apart = 0;
+    for (int x = (int)(FLAT_SIDE*(0.5 - 0.92*0.45)); x < (int)(FLAT_SIDE*(0.5 + 0.92*0.05)); x++) {
+        const int value = value_at(rgb[middle][x]);
+        if (rgb[middle][x][1] > 60) fail_msg("background at pixel %d", x);
+        if (value) ends[value - 1]++;
+    }
+    assert_true(abs(ends[0] - ends[1]) < 0.1*FLAT_SIDE);      /* each in its half */
 }
 
 /* Isolines stand where a value changes in one liquid, not between two that have a value each. */
@@ -340,6 +362,7 @@ int main(void)
 {
     char folder[] = "/tmp/tobiuo_region_XXXXXX", command[100];
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_regions), cmocka_unit_test(test_flat_pictures),
+                                        cmocka_unit_test(test_no_gap_between_liquids),
                                         cmocka_unit_test(test_color_bar),
                                         cmocka_unit_test(test_isolines_of_groups),
                                         cmocka_unit_test(test_standing_in_water),
