@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of the step of a fall by a spacing; steps until the end: a line that asks for shorter and more is noted. */
+static const double SHORT = 0.05, MANY = 1e4;
+
 static tobi_status check_bodies(const tobi_world *w, const tobi_line_def *def, tobi_line *l, tobi_error *err)
 {
     l->body = tobi_world_find_body(w, def->body);
@@ -139,6 +142,18 @@ static tobi_status note_end(tobi_world *w, const tobi_line *l, int body, const d
     return tobi_world_add_notes(w, "line", l->name, text, err);
 }
 
+/* A stiffness in other units, or that of steel, makes a run a hundred times as long. */
+static tobi_status note_stiffness(tobi_world *w, const tobi_line *l, tobi_error *err)
+{
+    const double step = tobi_lines_step_limit(l, 1, w->sim.bodies), g = vec3_length(w->sim.def.gravity),
+                 fall = 0.25*sqrt(w->sim.def.spacing/fmax(g, 1e-12)), end = w->sim.def.end_time;
+    char text[TOBI_NOTE];
+    if (!(step < SHORT*fall && end/step > MANY)) return TOBI_OK;
+    snprintf(text, sizeof text, tr("its stiffness, %.4g N/m, allows steps of %.2g s, %.0f of them until %g "
+             "s; a hundredth of it makes them ten times as long\n"), l->stiffness, step, end/step, end);
+    return tobi_world_add_notes(w, "line", l->name, text, err);
+}
+
 tobi_status tobi_world_note_lines(tobi_world *w, tobi_error *err)
 {
     for (int k = 0; k < w->line_count; k++) {
@@ -146,6 +161,7 @@ tobi_status tobi_world_note_lines(tobi_world *w, tobi_error *err)
         char text[TOBI_NOTE];
         TOBI_TRY(note_end(w, l, l->body, l->info.point, "point", err));
         TOBI_TRY(note_end(w, l, l->to_body, l->info.to, "to", err));
+        TOBI_TRY(note_stiffness(w, l, err));
         if (l->kind != TOBI_LINE_CATENARY || l->length > l->info.distance) continue;
         snprintf(text, sizeof text, tr("is %.4g m long, and its ends are %.4g m apart: it starts taut, with "
                  "%.4g %s\n"), l->length, l->info.distance, l->info.tension,
