@@ -17,7 +17,7 @@ static const double FEW_PERIODS = 8;  /* of fewer a gain is that of the waves th
 typedef struct response {
     wave_gauge record;
     char label[200], unit[24];
-    double least, most;             /* of the record, mean included                            */
+    double least, most;             /* of the rows, mean included                              */
     double way;                     /* m, from the first gauge of the waves to its mean place  */
     wave_gain *gain;                /* owned, of wave_set.bins frequencies                     */
 } response;
@@ -77,8 +77,10 @@ static int resample(const wave_run *w, const rows *r, int column, const char *na
             sum += weight*v[a];
         }
         one->record.eta[n] = sum;
-        one->least = fmin(one->least, sum), one->most = fmax(one->most, sum);
     }
+    for (size_t i = 0; i < r->count; i++)      /* of the rows: the cubic goes past the ends of a snatch */
+        if (t[i] >= s->begin - slack && t[i] <= end + slack)
+            one->least = fmin(one->least, v[i]), one->most = fmax(one->most, v[i]);
     return 0;
 }
 

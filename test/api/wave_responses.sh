@@ -99,6 +99,11 @@ expect 0 "" waves whole --gauges G1,G2,G3 --response raft --from 20
 near raft_x "phase [degrees]" 40 3
 expect 0 "periods of the waves; gains and phases of fewer than 8 are rough" waves whole --response raft --from 290
 mv anchored.csv whole/bodies.csv
+cp whole/lines.csv taut.csv
+awk -F, -v OFS=, 'NR > 1 && $2 < 8 { $2 = 0 } { print }' taut.csv > whole/lines.csv        # a rope that snatches
+expect 0 "" waves whole --gauges G1,G2,G3 --response rope_tension
+near rope_tension least 0 0
+mv taut.csv whole/lines.csv
 expect 0 "" waves whole --response raft
 check "without --gauges the first gauge" grep -q "^waves: G1" out.txt
 
