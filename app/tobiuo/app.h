@@ -287,7 +287,7 @@ typedef struct progress {
     int shown, columns;              /* is there a line; width of the terminal, 0: none        */
     double begun, start_time;        /* s of wall clock; s of simulated time                   */
     double last;                     /* s of wall clock of the last line                       */
-    double in_steps;                 /* s that the world had spent in steps then               */
+    double in_steps, in_nests;       /* s that the world, and all its nests, had spent in steps then */
     double particle_steps;           /* since the last line                                    */
     const tobi_run *run;             /* whose pictures count, or NULL                          */
     int troubles;                    /* of them said                                           */

@@ -47,10 +47,20 @@ static double sum_stages(const tobi_world *world)
     return sum;
 }
 
+/* s: of all nests of the world. */
+static double sum_nests(const tobi_world *world)
+{
+    const tobi_world *nest;
+    double sum = 0;
+    for (int k = 0; (nest = tobi_world_nest_at(world, k)) != NULL; k++) sum += sum_stages(nest);
+    return sum;
+}
+
 void progress_begin(progress *p, const tobi_world *world, int quiet)
 {
     *p = (progress){ .columns = terminal_columns(stderr), .begun = wall_clock(),
-                     .start_time = tobi_world_time(world), .in_steps = sum_stages(world) };
+                     .start_time = tobi_world_time(world), .in_steps = sum_stages(world),
+                     .in_nests = sum_nests(world) };
     p->last = quiet ? -1.0 : p->begun;
 }
 
@@ -69,10 +79,11 @@ static void rewrite_line(const progress *p, double share, const char *line)
 
 static void print_line(progress *p, const tobi_world *world, const tobi_step_info *info, double end)
 {
-    char line[512], left[96], solver[80] = "", writing[32] = "", pictures[48] = "";
+    char line[512], left[96], solver[80] = "", inside[32] = "", writing[32] = "", pictures[48] = "";
     const double now = wall_clock(), steps = sum_stages(world), spent = steps - p->in_steps;
     const double done = info->time - p->start_time, span = end - p->start_time;
-    const double outside = 1 - spent/(now - p->last);
+    const double nests = sum_nests(world), nested = (nests - p->in_nests)/(now - p->last);
+    const double outside = 1 - nested - spent/(now - p->last);
     write_end(done > 0.0 ? (now - p->begun)*(end - info->time)/done : 0.0, left, sizeof left);
     bool converged = info->density_converged && info->divergence_converged && !info->viscosity_failed;
     if (info->density_iterations + info->divergence_iterations > 0)    /* the method has a solver */
@@ -81,15 +92,17 @@ static void print_line(progress *p, const tobi_world *world, const tobi_step_inf
     double drawing = 0;
     const int64_t drawn = p->run ? tobi_run_pictures(p->run, &drawing) : 0;
     if (drawn > 0) snprintf(pictures, sizeof pictures, tr(", %.3g pictures/s beside"), (double)drawn/drawing);
+    if (nested > 0.1) snprintf(inside, sizeof inside, tr(", nests %.0f %%"), 100*nested);
     if (outside > 0.1) snprintf(writing, sizeof writing, tr(", output %.0f %%"), 100*outside);
-    snprintf(line, sizeof line, tr("t %.5f/%g s  %s  step %lld  dt %.3g s%s  %.2f M particle-steps/s%s%s"),
+    snprintf(line, sizeof line, tr("t %.5f/%g s  %s  step %lld  dt %.3g s%s  %.2f M particle-steps/s%s%s%s"),
              info->time, end, left, (long long)info->step, info->dt, solver,
-             spent > 0 ? p->particle_steps/spent*1e-6 : 0, writing, pictures);
+             spent > 0 ? p->particle_steps/spent*1e-6 : 0, inside, writing, pictures);
     if (p->columns) rewrite_line(p, span > 0 ? done/span : 1, line);
     else fprintf(stderr, "%s\n", line);
     fflush(stderr);
     p->shown = 1;
     p->in_steps = steps;
+    p->in_nests = nests;
 }
 
 void progress_step(progress *p, const tobi_world *world, const tobi_step_info *info, double end)

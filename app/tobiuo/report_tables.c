@@ -221,14 +221,16 @@ static double number_of(const json_t *json, const char *key)
 
 static void write_totals(const report *r)
 {
-    char steps[32], rest[32], memory[32];
-    const double wall = number_of(r->summary, "wall_s"), in_steps = number_of(r->summary, "step_wall_s");
+    char steps[32], nests[32], rest[32], memory[32];
+    const double wall = number_of(r->summary, "wall_s"), in_steps = number_of(r->summary, "step_wall_s"),
+                 in_nests = number_of(r->summary, "nests_wall_s");
+    const double more = wall - in_steps - (in_nests > 0 ? in_nests : 0);
     fputs("<p>", r->file);
     fprintf(r->file, tr("%.0f steps took %s"), number_of(r->summary, "steps"),
             duration_text(in_steps, steps));
-    if (wall > in_steps)
-        fprintf(r->file, tr(", files and pictures that steps did not hide %s"),
-                duration_text(wall - in_steps, rest));
+    if (in_nests > 0) fprintf(r->file, tr(", those of nests %s"), duration_text(in_nests, nests));
+    if (more > 0)
+        fprintf(r->file, tr(", files and pictures that steps did not hide %s"), duration_text(more, rest));
     fprintf(r->file, tr(". %.3g million particle-steps per second on %.0f threads; the program held "
                         "%s at most."),
             1e-6*number_of(r->summary, "particle_steps_per_s"), number_of(r->summary, "threads"),

@@ -104,6 +104,9 @@ static json_t *make_summary(tobi_run *run, const char *outcome)
     if (json && more) json_object_update(json, more);
     if (json && tobi_world_probe_count(run->world)) json_object_set_new(json, "sensors",
         tobi_probes_sum_up(run));
+    double nests = 0;
+    for (int k = 0; k < run->nest_count; k++) nests += run->nest[k]->step_wall;
+    if (json && run->nest_count) json_object_set_new(json, "nests_wall_s", number(nests));
     const int64_t unwritten = tobi_run_unwritten(run);
     if (json && unwritten)
         json_object_set_new(json, "files_not_written", json_integer((json_int_t)unwritten));

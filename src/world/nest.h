@@ -23,6 +23,8 @@ tobi_status tobi_nest_tally(tobi_world *w, tobi_error *err);
 /* When it has caught up with the outer world: what moves by forces there feels in the steps to come what the
    nest pressed it with more, if all of it is in the box. */
 void tobi_nest_press(tobi_world *nest, tobi_world *outer);
+/* The bodies that it moved are the outer world's alone. */
+void tobi_nest_let_go(tobi_world *nest);
 /* After a step, nest_rim.c: liquid beyond the rim is removed, and the rim is filled where the outer world has
    liquid and the nest has none. */
 tobi_status tobi_nest_pass(tobi_world *w, tobi_error *err);

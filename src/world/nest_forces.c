@@ -61,6 +61,18 @@ static int gives_way(const tobi_nest *n, const tobi_simulation *outer, const tob
     return outer->nest_spacing[r->finer_by - 1] <= outer->nest_spacing[n->number - 1];
 }
 
+void tobi_nest_let_go(tobi_world *nest)
+{
+    static const double none[6] = { 0 };
+    tobi_world *outer = nest->outer;
+    for (int k = 0; k < outer->sim.body_count; k++) {
+        tobi_rigid *r = &outer->sim.bodies[k].rigid;
+        if (r->finer_by != nest->sim.nest.number) continue;
+        tobi_rigid_set_finer(outer->dynamics, k, none);
+        r->finer_by = 0;
+    }
+}
+
 void tobi_nest_press(tobi_world *nest, tobi_world *outer)
 {
     const tobi_nest *n = &nest->sim.nest;

@@ -15,6 +15,7 @@ void tobi_nest_leave(tobi_world *w)
 {
     for (tobi_world *n = w->first_nest; n; n = n->next_nest) n->outer = NULL;
     if (!w->outer) return;
+    tobi_nest_let_go(w);
     tobi_world **at = &w->outer->first_nest;
     while (*at && *at != w) at = &(*at)->next_nest;
     if (*at) *at = w->next_nest;

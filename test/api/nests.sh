@@ -36,6 +36,10 @@ for method in isph dfsph; do
     check "$method: and the same particles" same_particles whole_$method parts_$method
 done
 
+check "a buoy is moved by its nest: isph" sh -c 'tail -1 whole_isph/bodies.csv |
+    awk -F, "{exit !(\$NF != 0)}" && head -1 whole_isph/bodies.csv | grep -q ",nest_work$"'
+check "and measured alone: dfsph" sh -c '! head -1 whole_dfsph/bodies.csv | grep -q nest_'
+
 # Steps of nests take most of the time, so that a stop at any time hits one.
 for k in 1 2 3 4 5; do
     rm -rf stop
@@ -144,6 +148,7 @@ if command -v gnuplot > /dev/null; then
     expect 0 "" report whole_isph
     check "nothing is told of bodies that are not in the box" test ! -s err.txt
     check "the report lists its nests" grep -q '<a href="nests/end/report.html">end</a>' whole_isph/report.html
+    check "and the time that their steps took" grep -q ', those of nests [0-9.]* s' whole_isph/report.html
     check "which have reports" test -s whole_isph/nests/end/report.html -a -s whole_isph/nests/buoy/report.html
     check "without nests of their own" sh -c '! grep -q "<h2>Nests" whole_isph/nests/end/report.html'
     expect 1 "report.html exists" report whole_isph

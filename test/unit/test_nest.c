@@ -100,6 +100,30 @@ static void rest_stays_rest(void **state)
             }
 }
 
+/* A gauge stands on the box where that ends above the floor; below the surface it reads the rim's top. */
+static void a_gauge_stands_on_the_box(void **state)
+{
+    (void)state;
+    for (int below = 0; below < 2; below++) {
+        tobi_world *outer = make_tank("isph", 0.02, 1, 0.4), *nest = make_tank("isph", 0.01, 1, 0.4);
+        const tobi_nest_def n = make_box(0.3, 0.2, 0.7, below ? 0.3 : 0.6);
+        tobi_probe_def gauge = tobi_default_probe_def();
+        tobi_probe_info info;
+        gauge.name = "gauge";
+        gauge.kind = TOBI_PROBE_LEVEL;
+        gauge.position[0] = 0.5;
+        gauge.position[1] = 0.1;
+        OK(tobi_world_add_probe(nest, &gauge, &err));
+        OK(tobi_world_nest(nest, outer, &n, &err));
+        advance(outer, nest, 0.01);
+        OK(tobi_world_probe(nest, 0, &info, &err));
+        const double top = below ? 0.3 + nest->sim.nest.rim : 0.4;
+        if (fabs(info.level - top) > 0.01) fail_msg("a level of %g m, %g m is right", info.level, top);
+        tobi_world_destroy(nest);
+        tobi_world_destroy(outer);
+    }
+}
+
 /* Where layers do not fit, both take another spacing, and the ratio stays. */
 static void spacings_give_way_together(void **state)
 {
@@ -392,7 +416,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rest_stays_rest), cmocka_unit_test(spacings_give_way_together),
-        cmocka_unit_test(as_much_comes_in),
+        cmocka_unit_test(as_much_comes_in), cmocka_unit_test(a_gauge_stands_on_the_box),
         cmocka_unit_test(liquid_that_gains_speed_is_not_pushed), cmocka_unit_test(a_box_goes_along),
         cmocka_unit_test(a_body_goes_as_outside), cmocka_unit_test(what_is_refused),
         cmocka_unit_test(openings_stay_outside), cmocka_unit_test(suction_opens_no_void),

@@ -84,7 +84,7 @@ static void a_body_half_in_a_box_is_not_moved_by_it(void **state)
     assert_true(pull_plate("dfsph", 0.02, nest_around).velocity == pull_plate("dfsph", 0.02, "").velocity);
 }
 
-/* A body that leaves the box is rid of what the nest gave. */
+/* A body that leaves the box is rid of what the nest gave, and so is one whose nest is gone. */
 static void a_body_that_leaves_a_box_is_free_of_it(void **state)
 {
     (void)state;
@@ -98,6 +98,15 @@ static void a_body_that_leaves_a_box_is_free_of_it(void **state)
     OK(tobi_nests_follow(a.nests, &err));
     assert_int_equal(r->finer_by, 0);
     for (int k = 0; k < 6; k++) assert_true(r->finer[k] == 0);
+    nest_rig_drop(&a);
+    a = make_plate("isph", 0.02, nest_around);
+    pull(&a, 0.05);
+    r = &a.world->sim.bodies[0].rigid;
+    assert_int_equal(r->finer_by, 1);
+    tobi_nests_free(a.nests);
+    a.nests = NULL;
+    assert_int_equal(r->finer_by, 0);
+    assert_true(r->finer[1] == 0);
     nest_rig_drop(&a);
 }
 

@@ -133,12 +133,22 @@ int tobi_sensor_up(const tobi_system *s, double *sign)
     return axis;
 }
 
+/* m from the lowest side of the domain: where liquid begins; in a nest that ends above it, its box. */
+static double find_bottom(const tobi_system *s, int axis, double sign)
+{
+    const tobi_nest *n = &s->sim->nest;
+    if (!n->outer) return 0;
+    const double bottom = sign > 0 ? n->lower[axis] : s->box.size[axis] - n->upper[axis];
+    return fmin(fmax(bottom, 0), s->box.size[axis]);
+}
+
 double tobi_sensor_level(const tobi_system *s, int fluid, const double x[3])
 {
     double from[3] = { x[0], x[1], s->box.dimension == 3 ? x[2] : 0 }, along[3] = { 0 }, sign, floor_at;
     const int axis = tobi_sensor_up(s, &sign);
-    from[axis] = s->box.lower[axis] + (sign > 0 ? 0 : s->box.size[axis]);
+    const double bottom = find_bottom(s, axis, sign);
+    from[axis] = s->box.lower[axis] + (sign > 0 ? bottom : s->box.size[axis] - bottom);
     along[axis] = sign;
-    const double top = tobi_sensor_column(s, fluid, from, along, s->box.size[axis], &floor_at);
+    const double top = tobi_sensor_column(s, fluid, from, along, s->box.size[axis] - bottom, &floor_at);
     return from[axis] + sign*(top >= 0 ? top : floor_at);
 }
