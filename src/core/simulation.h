@@ -33,8 +33,6 @@ typedef struct tobi_simulation {
     tobi_opening *openings;         /* owned by the world                                    */
     int opening_count;
     tobi_nest nest;
-    int nest_count;                 /* worlds that are nests of this one                      */
-    double nest_spacing[TOBI_NEST_LIMIT];       /* m, of each                                 */
     tobi_float4 *before;            /* owned by the world: velocities before the step by id, for nests */
     int64_t before_room;
     tobi_damping damping[TOBI_DAMPING_LIMIT];

@@ -193,7 +193,7 @@ static bool has_field(const tobi_run *run) { return run->world->drive && has_mov
 
 static bool has_nests(const tobi_run *run)
 {
-    return run->world->sim.nest_count > 0 && run->world->system[0].method->nests > 1 && has_moving(run);
+    return tobi_world_nest_at(run->world, 0) && run->world->system[0].method->nests > 1 && has_moving(run);
 }
 
 /* The last columns are of worlds that have what they tell. */

@@ -135,19 +135,33 @@ static bool list_particles(grid *s, int64_t count)
     return s->entry != NULL;
 }
 
-/* Beyond a clip plane sums fall through the level in it, as in a wall. */
-static void limit_to_plane(const grid *s, int64_t b)
+/* Cells that a place lies beyond what is drawn. */
+typedef double beyond(const grid *s, const double p[3]);
+
+static double beyond_plane(const grid *s, const double p[3])
 {
-    const tobi_picture *f = s->f;
+    const double half = fmax(0.5*s->f->slice, s->edge);      /* the grid sees nothing thinner */
+    return view_beyond(s->f, p, half)/s->edge;
+}
+
+/* Where the liquid of a nest goes on. Farther, so that there is no groove between. */
+static double beyond_nests(const grid *s, const double p[3])
+{
+    static const double LAP = 2;      /* cells: smoothing rounds so much */
+    return view_beyond_nests(s->f->nests, s->f->nest_count, s->nest, p)/s->edge - LAP;
+}
+
+/* There sums fall through the level, as in a wall. */
+static void limit_sums(const grid *s, int64_t b, beyond *of)
+{
     float *node = s->node + b*BLOCK_NODES;
-    const double half = fmax(0.5*f->slice, s->edge);      /* the grid sees nothing thinner */
     for (int z = 0; z < BLOCK_EDGE; z++)
         for (int y = 0; y < BLOCK_EDGE; y++)
             for (int x = 0; x < BLOCK_EDGE; x++, node++) {
                 const double p[3] = { s->low[0] + s->edge*(BLOCK_EDGE*s->block[b][0] + x),
                                       s->low[1] + s->edge*(BLOCK_EDGE*s->block[b][1] + y),
                                       s->low[2] + s->edge*(BLOCK_EDGE*s->block[b][2] + z) };
-                const float most = s->level - 0.5f*(float)(view_beyond(f, p, half)/s->edge);
+                const float most = s->level - 0.5f*(float)of(s, p);
                 *node = *node < most ? *node : most;
             }
 }
@@ -174,31 +188,13 @@ static void limit_block(const grid *s, int64_t b)
         }
 }
 
-/* Likewise where the liquid of a nest goes on. Farther, so that there is no groove between. */
-static void limit_to_nests(const grid *s, int64_t b)
-{
-    static const double LAP = 2;      /* cells: smoothing rounds so much */
-    const tobi_picture *f = s->f;
-    float *node = s->node + b*BLOCK_NODES;
-    for (int z = 0; z < BLOCK_EDGE; z++)
-        for (int y = 0; y < BLOCK_EDGE; y++)
-            for (int x = 0; x < BLOCK_EDGE; x++, node++) {
-                const double p[3] = { s->low[0] + s->edge*(BLOCK_EDGE*s->block[b][0] + x),
-                                      s->low[1] + s->edge*(BLOCK_EDGE*s->block[b][1] + y),
-                                      s->low[2] + s->edge*(BLOCK_EDGE*s->block[b][2] + z) };
-                const double beyond = view_beyond_nests(f->nests, f->nest_count, s->nest, p);
-                const float most = s->level - 0.5f*(float)(beyond/s->edge - LAP);
-                *node = *node < most ? *node : most;
-            }
-}
-
 static void limit_blocks(const void *view, int64_t begin, int64_t end)
 {
     const grid *s = view;
     for (int64_t b = begin; b < end; b++) {
         limit_block(s, b);
-        if (s->f->clip) limit_to_plane(s, b);
-        if (s->f->nest) limit_to_nests(s, b);
+        if (s->f->clip) limit_sums(s, b, beyond_plane);
+        if (s->f->nest) limit_sums(s, b, beyond_nests);
     }
 }
 

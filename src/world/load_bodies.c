@@ -5,6 +5,7 @@
 #include "rigid/dynamics.h"
 #include "world/absorb.h"
 #include "world/bodies.h"
+#include "world/nest.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -207,8 +208,7 @@ static void take_edge(tobi_body *b, tobi_loaded_body *l)
     l->edge_foot = NULL;
 }
 
-/* nests: of the world now. */
-static void take_body(tobi_body *b, tobi_loaded_body *l, int nests)
+static void take_body(const tobi_world *w, tobi_body *b, tobi_loaded_body *l)
 {
     tobi_rigid rigid = b->rigid;
     memcpy(TOBI_RIGID_STATE(&rigid), l->state, sizeof l->state);
@@ -217,7 +217,8 @@ static void take_body(tobi_body *b, tobi_loaded_body *l, int nests)
     memcpy(rigid.torque, l->load + 3, sizeof rigid.torque);
     memcpy(rigid.finer, l->finer, sizeof rigid.finer);
     rigid.finer_by = (int)l->finer[6];
-    if (rigid.finer_by > nests) memset(rigid.finer, 0, sizeof rigid.finer), rigid.finer_by = 0;
+    if (!tobi_nest_numbered(w, rigid.finer_by)) rigid.finer_by = 0;
+    if (!rigid.finer_by) memset(rigid.finer, 0, sizeof rigid.finer);
     rigid.phase = fmin(fmax(rigid.phase, -1e9), 1e9);
     rigid.hold = (int)fmin(fmax(rigid.hold, 0), 63) & 63;
     b->rigid = rigid;
@@ -242,7 +243,7 @@ tobi_status tobi_world_take_bodies(tobi_world *w, tobi_loaded_bodies *l, tobi_er
     if (w->dynamics) TOBI_TRY(tobi_rigid_set_warm(w->dynamics, l->contact_count, l->contacts, err));
     for (int k = 0; k < l->count; k++) {
         double *absorb = tobi_absorb_state(w, k);
-        take_body(&w->sim.bodies[k], &l->body[k], w->sim.nest_count);
+        take_body(w, &w->sim.bodies[k], &l->body[k]);
         if (absorb) memcpy(absorb, l->body[k].absorb, sizeof l->body[k].absorb);
     }
     tobi_absorb_restore(w);

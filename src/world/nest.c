@@ -104,7 +104,7 @@ static tobi_status check_worlds(const tobi_world *w, const tobi_world *outer, co
     for (int a = 0; a < in->dimension; a++)
         same &= in->domain_min[a] == out->domain_min[a] && in->domain_max[a] == out->domain_max[a];
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world becomes no nest");
-    if (outer->sim.nest_count == TOBI_NEST_LIMIT)
+    if (tobi_nest_count(outer) == TOBI_NEST_LIMIT)
         return tobi_fail(err, TOBI_INVALID, "nest '%s': a world has %d nests or fewer", def->name,
                          TOBI_NEST_LIMIT);
     if (outer->sim.nest.outer)
@@ -204,8 +204,6 @@ tobi_status tobi_world_nest(tobi_world *w, tobi_world *outer, const tobi_nest_de
     TOBI_TRY(find_body(outer, def, &n, err));
     TOBI_TRY(check_periods(&n, box, def, err));
     TOBI_TRY(check_openings(outer, &n, def, err));
-    outer->sim.nest_spacing[outer->sim.nest_count++] = w->sim.def.spacing;
-    n.number = outer->sim.nest_count;
     w->sim.nest = n;
     w->outer = outer;
     tobi_nest_join(w);
@@ -222,7 +220,7 @@ static void remember_range(const void *view, int64_t begin, int64_t end)
 tobi_status tobi_nest_remember(tobi_world *w, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
-    if (s->nest_count == 0) return TOBI_OK;
+    if (!w->first_nest) return TOBI_OK;
     if (s->next_id > s->before_room) {
         const int64_t room = s->next_id + s->next_id/2;
         tobi_float4 *more = realloc(s->before, (size_t)room*sizeof *more);

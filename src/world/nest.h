@@ -10,6 +10,9 @@ void tobi_nest_middle(const tobi_simulation *outer, int body, double middle[3]);
 /* nest_list.c: w becomes the last of the nests of its outer world, or none of them. */
 void tobi_nest_join(tobi_world *w);
 void tobi_nest_leave(tobi_world *w);
+int tobi_nest_count(const tobi_world *outer);
+/* The nest that has this number (core/nest.h), or NULL. */
+tobi_world *tobi_nest_numbered(const tobi_world *outer, int number);
 /* Whether a region of the system begins there: everywhere but outside of a nest. */
 int tobi_nest_takes(const tobi_system *s, const double x[3]);
 /* How many particles a nest may begin with, of so many that its regions have in the whole domain. */

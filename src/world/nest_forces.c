@@ -55,10 +55,10 @@ static int is_within(const tobi_nest *n, int dimension, const tobi_body *b)
 }
 
 /* The finest nest around a body moves it; of two as fine, the one that does so already. */
-static int gives_way(const tobi_nest *n, const tobi_simulation *outer, const tobi_rigid *r)
+static int gives_way(const tobi_world *nest, const tobi_world *outer, const tobi_rigid *r)
 {
-    if (r->finer_by == 0 || r->finer_by == n->number) return 0;
-    return outer->nest_spacing[r->finer_by - 1] <= outer->nest_spacing[n->number - 1];
+    const tobi_world *by = tobi_nest_numbered(outer, r->finer_by);
+    return by && by != nest && by->system[0].smoothing.spacing <= nest->system[0].smoothing.spacing;
 }
 
 void tobi_nest_let_go(tobi_world *nest)
@@ -82,7 +82,7 @@ void tobi_nest_press(tobi_world *nest, tobi_world *outer)
         tobi_body *b = &outer->sim.bodies[k];
         tobi_rigid *r = &b->rigid;
         double finer[6] = { 0 }, here[6];
-        if (r->kind == TOBI_PRESCRIBED || gives_way(n, &outer->sim, r)) continue;
+        if (r->kind == TOBI_PRESCRIBED || gives_way(nest, outer, r)) continue;
         const int within = is_within(n, nest->sim.def.dimension, b);
         if (!within && r->finer_by != n->number) continue;
         find_press(b, here);

@@ -7,8 +7,23 @@
 void tobi_nest_join(tobi_world *w)
 {
     tobi_world **last = &w->outer->first_nest;
-    while (*last) last = &(*last)->next_nest;
+    w->sim.nest.number = 1;
+    for (; *last; last = &(*last)->next_nest) w->sim.nest.number = (*last)->sim.nest.number + 1;
     *last = w;
+}
+
+int tobi_nest_count(const tobi_world *outer)
+{
+    int count = 0;
+    for (const tobi_world *n = outer->first_nest; n; n = n->next_nest) count++;
+    return count;
+}
+
+tobi_world *tobi_nest_numbered(const tobi_world *outer, int number)
+{
+    tobi_world *n = outer->first_nest;
+    while (n && n->sim.nest.number != number) n = n->next_nest;
+    return n;
 }
 
 void tobi_nest_leave(tobi_world *w)

@@ -376,9 +376,13 @@ static void what_is_refused(void **state)
     REFUSED(tobi_world_feed(nest, &err), TOBI_INVALID, "no nest");
     OK(tobi_world_nest(nest, outer, &n, &err));
     REFUSED(try_nest(other, nest, n, &err), TOBI_UNSUPPORTED, "is a nest itself");
-    outer->sim.nest_count = TOBI_NEST_LIMIT;
+    tobi_world *more[3];
+    for (int k = 0; k < 3; k++) {
+        more[k] = make_tank("isph", 0.01, 1, 0.4);
+        OK(tobi_world_nest(more[k], outer, &n, &err));
+    }
     REFUSED(try_nest(other, outer, n, &err), TOBI_INVALID, "a world has 4 nests or fewer");
-    outer->sim.nest_count = 1;
+    for (int k = 0; k < 3; k++) tobi_world_destroy(more[k]);
     OK(tobi_world_start(other, &err));
     REFUSED(try_nest(other, outer, n, &err), TOBI_INVALID, "a started world becomes no nest");
     tobi_world *free = make_tank("isph", 0.01, 1, 0.4);
