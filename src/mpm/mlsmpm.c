@@ -60,7 +60,7 @@ static void add_planes(const tobi_system *s, int keep, mpm_view *v)
             p->normal[a] = side ? -1 : 1;
             p->offset = side ? -s->box.size[a] : 0;
             p->kind = kind;
-            p->limited = v->touched & bit ? 1 + a : 0;
+            p->limited = v->limited & bit ? 1 + a : 0;
             p->friction = (float)def->friction;
             for (int k = 0; k < 3; k++) p->velocity[k] = (float)velocity[k];
         }

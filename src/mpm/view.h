@@ -114,6 +114,7 @@ typedef struct mpm_view {
     int    plane_count;
     mpm_plane plane[MPM_PLANES];
     double size[3];                    /* m, of the domain                                         */
+    int    limited;                    /* bit 2 axis + side: only some nodes obey that side, mpm_patch.obey */
     int    touched, obeyed;            /* bit 2 axis + side: particles of some solid touch that side; nodes
                                           of some solid obey it                                    */
     int    held;                       /* bit 2 axis + side: that side keeps particles inside      */

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "mpm/contact/clamp.h"
 #include "world/world.h"
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -118,48 +117,14 @@ static tobi_status note_push(tobi_world *w, const tobi_solid *d, const tobi_body
     return tobi_world_add_notes(w, "solid", d->name, text, err);
 }
 
-/* Of a solid the held particle that starts nearest to a side: its distance, m. */
-static double find_gap(const tobi_system *s, int solid, int side)
-{
-    double gap = INFINITY;
-    for (int64_t i = 0; i < s->particles.count; i++) {
-        if (s->particles.fluid[i] != solid || mpm_clamp_body(s, i) < 0) continue;
-        const double at = (&s->particles.position[i].x)[side/2];
-        gap = fmin(gap, side%2 ? s->box.size[side/2] - at : at);
-    }
-    return gap;
-}
-
-/* A clamp also moves nodes that a side stops, and the side does not stop them again: the strain of what both
-   hold may grow without bound. Beside a liquid nodes obey the sides at which a solid starts. */
-static tobi_status note_sides(tobi_world *w, const tobi_system *s, int solid, tobi_error *err)
-{
-    const double spacing = s->smoothing.spacing, cell = ((const tobi_mlsmpm_def *)s->def)->cell*spacing;
-    const double reach = w->sim.soft.solids == s ? spacing : 1.5*cell;
-    for (int side = 0; side < 2*s->box.dimension; side++) {
-        const tobi_wall wall = (side%2 ? w->sim.def.wall_max : w->sim.def.wall_min)[side/2];
-        const double gap = find_gap(s, solid, side);
-        char text[TOBI_NOTE];
-        if (wall == TOBI_WALL_OPEN || wall == TOBI_WALL_PERIODIC || gap >= reach*(1 - 1e-6)) continue;
-        if (wall == TOBI_WALL_SEPARATE && gap < spacing) continue;
-        snprintf(text, sizeof text, tr("what is clamped of it begins beside the side at the %s %c, which "
-                 "holds it too: both together may strain it without bound; let it begin %.3g m from that "
-                 "side\n"), side%2 ? tr("upper") : tr("lower"), "xyz"[side/2], reach);
-        TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[solid].name, text, err));
-    }
-    return TOBI_OK;
-}
-
 tobi_status tobi_world_start_clamps(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = tobi_world_solids(w);
-    for (int k = 0; s && k < s->solid_count; k++) {
-        const tobi_solid *d = &s->solids[k];
-        for (int n = 0; n < d->clamp_count; n++) {
+    for (int k = 0; s && k < s->solid_count; k++)
+        for (int n = 0; n < s->solids[k].clamp_count; n++) {
+            const tobi_solid *d = &s->solids[k];
             TOBI_TRY(start_clamp(w, k, n, err));
             TOBI_TRY(note_push(w, d, &w->sim.bodies[d->clamp[n]], err));
         }
-        if (d->clamp_count > 0) TOBI_TRY(note_sides(w, s, k, err));
-    }
     return TOBI_OK;
 }

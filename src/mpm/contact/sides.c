@@ -3,6 +3,7 @@
    (decisions 113 and 120). Drawback: where a solid that touches a side lies beside one that started there,
    nodes of both stop it. */
 #include "mpm/contact/sides.h"
+#include "mpm/contact/clamp.h"
 #include "exec/exec.h"
 #include "mpm/feel.h"
 #include "mpm/particle_fields.h"
@@ -51,6 +52,7 @@ void mpm_sides_find(const tobi_system *s, mpm_view *v, uint8_t touched[])
         walls |= (kind_of(s, k) != TOBI_WALL_OPEN && kind_of(s, k) != TOBI_WALL_PERIODIC) << k;
     v->touched = 0;
     v->obeyed = walls;
+    v->limited = mpm_fields_of(&s->particles)->clamp ? walls : 0;
     if (s->sim->soft.solids != s) return;
     const int64_t count = s->particles.count;
     tobi_loop(tobi_team(&s->sim->exec, count, 32768), count, 0, find_started, &view);
@@ -60,12 +62,14 @@ void mpm_sides_find(const tobi_system *s, mpm_view *v, uint8_t touched[])
         v->touched |= touched[k];
         v->obeyed |= walls & started[k];
     }
+    v->limited |= v->touched;
     s->sim->soft.touched = touched;
 }
 
 /* --- nodes ------------------------------------------------------------------------------------------ */
 
-typedef struct marking { const tobi_system *s; mpm_grid *g; const mpm_view *v; } marking;
+/* held: of particles that a clamp holds, which take marks away. */
+typedef struct marking { const tobi_system *s; mpm_grid *g; const mpm_view *v; int held; } marking;
 
 static void forget_marks(const void *view, int64_t begin, int64_t end)
 {
@@ -73,7 +77,7 @@ static void forget_marks(const void *view, int64_t begin, int64_t end)
     for (int64_t k = begin; k < end; k++) memset(m->g->patch[k].obey, 0, sizeof m->g->patch[k].obey);
 }
 
-/* The nodes that particle i feels obey sides of axis a. */
+/* The nodes that particle i feels obey sides of axis a, or do not. */
 static void mark_nodes(const marking *m, int64_t i, int a, mpm_felt *last, uint32_t *node)
 {
     const int nodes = m->g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D;
@@ -83,7 +87,9 @@ static void mark_nodes(const marking *m, int64_t i, int a, mpm_felt *last, uint3
     for (int n = 0; n < mpm_nodes_each(m->g); n++) {
         const uint64_t bit = UINT64_C(1) << node[n]%nodes;
         uint64_t *all = &m->g->patch[node[n]/nodes].obey[a];
-        if (!(__atomic_load_n(all, __ATOMIC_RELAXED) & bit)) __atomic_fetch_or(all, bit, __ATOMIC_RELAXED);
+        const int marked = (__atomic_load_n(all, __ATOMIC_RELAXED) & bit) != 0;
+        if (m->held && marked) __atomic_fetch_and(all, ~bit, __ATOMIC_RELAXED);
+        if (!m->held && !marked) __atomic_fetch_or(all, bit, __ATOMIC_RELAXED);
     }
 }
 
@@ -99,11 +105,12 @@ static void mark_blocks(const void *view, int64_t begin, int64_t end)
         for (int side = 0; side < 2*s->box.dimension; side++) {
             const int a = side/2;
             const double size = s->box.size[a];
-            if (!(m->v->touched & m->v->obeyed & 1 << side)) continue;
+            if (!(m->v->limited & m->v->obeyed & 1 << side)) continue;
             if (side%2 ? (b->corner[a] + 7)*(double)m->v->cell < size : b->corner[a] > 2) continue;
             for (int64_t i = b->begin; i < b->end; i++) {
                 const double x = (&s->particles.position[i].x)[a];
-                if (s->sim->soft.touched[s->particles.fluid[i]] >> side & 1) continue;
+                if (m->v->touched && s->sim->soft.touched[s->particles.fluid[i]] >> side & 1) continue;
+                if ((mpm_clamp_body(s, i) >= 0) != m->held) continue;
                 if ((side%2 ? size - x : x) >= 1.5*(double)m->v->cell) continue;
                 mark_nodes(m, i, a, &last, node[last.node == node[0]]);
             }
@@ -113,10 +120,13 @@ static void mark_blocks(const void *view, int64_t begin, int64_t end)
 
 void mpm_sides_mark(const tobi_system *s, mpm_grid *g, const mpm_view *v)
 {
-    const marking view = { s, g, v };
-    if (!(v->touched & v->obeyed)) return;
+    marking view = { s, g, v, 0 };
+    if (!(v->limited & v->obeyed)) return;
     tobi_loop(s->sim->exec.threads, g->patch_count + g->patch_twins, 0, forget_marks, &view);
     tobi_loop(s->sim->exec.threads, g->block_count, 4, mark_blocks, &view);
+    view.held = 1;
+    if (mpm_fields_of(&s->particles)->clamp)
+        tobi_loop(s->sim->exec.threads, g->block_count, 4, mark_blocks, &view);
 }
 
 /* --- particles -------------------------------------------------------------------------------------- */
