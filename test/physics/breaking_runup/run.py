@@ -27,7 +27,7 @@ def measured_runup():
     return math.exp(offset + slope*math.log(HEIGHT))
 
 
-def run_up(layers):
+def run_up(layers, nested=False):
     spacing, meant = D/layers, measured_runup()
     k, c = soliton(HEIGHT)
     before = math.acosh(math.sqrt(20))/k                       # of the crest at time 0, in d
@@ -36,17 +36,22 @@ def run_up(layers):
     end = round((2*4.1/k/c + (flat/D - before)/c + 45)*unit, 4)
     places = sorted({x for levels in LEVELS.values() for x, _ in levels})
     gauges = [("start", -before*D)] + [(f"x{n}", (COT - x)*D) for n, x in enumerate(places)]
-    label = f"d_{layers}"
+    label = f"d_{layers}_nest" if nested else f"d_{layers}"
     content = scene(case.out/f"{label}.obj", D, HEIGHT, COT, layers, flat, meant, end, gauges)
+    if nested:
+        high = content["domain"]["max"]
+        content["nests"] = [{"name": "beach", "box": {"min": [flat + (COT - 14)*D, 0], "max": high}, "refinement": 2}]
     out, name = case.run(label, scene=case.write_scene(label, content), may_fail=case.args.method == "wcsph"), f"d/{layers}"
+    name += ", nest" if nested else ""
     if not out:
         case.figure(f"{name}: runs to its end", 0, "1", False)
         return
-    table = read_table(out / "probes.csv")
+    start = read_table(out / "probes.csv")
+    peak = max(range(len(start["time"])), key=lambda i: start["start_level"][i])
+    case.state(f"{name}: height of the wave at time 0 over H", (start["start_level"][peak]/D - 1)/HEIGHT)
+    table = read_table(out / "nests" / "beach" / "probes.csv") if nested else start
     times = table["time"]
-    peak = max(range(len(times)), key=lambda i: table["start_level"][i])
-    case.state(f"{name}: height of the wave at time 0 over H", (table["start_level"][peak]/D - 1)/HEIGHT)
-    scaled = [(t - times[peak])/unit for t in times]
+    scaled = [(t - start["time"][peak])/unit for t in times]
     found = max(table["shore_run_up"])/D - 1
     case.figure(f"{name}: R/d over the measured {meant:.3f}, deviation", found/meant - 1, "within 0.05", abs(found/meant - 1) <= 0.05)
     curves.append((name, scaled, [y/D - 1 for y in table["shore_run_up"]], False))
@@ -67,6 +72,9 @@ def run_up(layers):
 curves, profiles = [], {t: [("measured", *zip(*levels), True)] for t, levels in LEVELS.items()}
 for layers in case.pick((10,), (15, 25)):
     run_up(layers)
+if case.args.method == "isph" and not case.smoke:
+    run_up(25, nested=True)
+    run_up(50)
 case.plot("Run-up over depth", "t sqrt(g/d)", "1", curves + [("measured", [0, 45], [measured_runup()]*2, False)])
 for t, drawn in profiles.items():
     case.plot(f"Level over depth at t = {t}", "x/d, seawards", "1", drawn)

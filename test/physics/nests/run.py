@@ -5,7 +5,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from harness import Case, read_table
+from harness import Case, ROOT, read_table
 
 case = Case("nests", "Nests: a finer box in a coarse tank", methods=("dfsph",))
 METHOD = case.args.method or "isph"
@@ -112,6 +112,35 @@ def cylinder(feedback):
     case.state(f"{name}: drag in the scene over the fine run", drags[0]/drags[2])
 
 
+def pulled():
+    """A plate that a constant force pulls across: its liquid is most of what gains speed."""
+    size, until = 1.2, 0.2
+    scene = {"domain": {"min": [0, 0], "max": [size, size]}, "gravity": [0, 0], "end_time": until, "output": {"interval": 0.05},
+             "fluids": [{"name": "water", "viscosity": 0, "fill": [{"box": {"min": [0, 0], "max": [size, size]}}]}],
+             "bodies": [{"name": "plate", "box": {"min": [0.52, 0.598], "max": [0.68, 0.602]}, "dynamics": "free", "mass": 10,
+                         "force": [0, 10, 0], "friction": "slip", "locked": "x,turn_z"}]}
+    folders = run_three("pulled", scene, {"box": {"min": [0.36, 0.44], "max": [0.84, 0.76]}}, 0.02)
+    speeds = [read_table(folder/"bodies.csv")["velocity_y"][-1] for folder in (folders[0], folders[2])]
+    alone = case.run("pulled_alone", scene=case.write_scene("pulled_alone", {"method": METHOD, "dimension": 2, "spacing": 0.02, **scene}))
+    without = read_table(alone/"bodies.csv")["velocity_y"][-1]
+    case.figure("pulled plate: speed in the nest over the fine run", speeds[0]/speeds[1], "within 0.05",
+                abs(speeds[0]/speeds[1] - 1) <= 0.05)
+    case.state("pulled plate: speed without a nest over the fine run", without/speeds[1])
+
+
+def eel():
+    """The second beat of scenes/eel."""
+    nest = '[{"name": "near", "box": {"min": [3.6, 0.6], "max": [4.94, 1.4]}, "follow": "eel"}]'
+    speeds = []
+    for label, spacing, more in (("eel_nest", 0.02, ["--set", f"nests={nest}"]), ("eel_alone", 0.02, []), ("eel_fine", 0.01, [])):
+        table = read_table(case.run(label, "--set", f"method={METHOD}", "--spacing", spacing, "--until", 2, *more,
+                                    scene=ROOT/"scenes/eel/scene.json")/"bodies.csv")
+        first = min(range(len(table["time"])), key=lambda k: abs(table["time"][k] - 1))
+        speeds.append(math.hypot(*(table[f"position_{a}"][-1] - table[f"position_{a}"][first] for a in "xy")))
+    case.figure("eel: speed in a nest over the fine run", speeds[0]/speeds[2], "within 0.03", abs(speeds[0]/speeds[2] - 1) <= 0.03)
+    case.state("eel: speed without a nest over the fine run", speeds[1]/speeds[2])
+
+
 def rest():
     d, depth = 0.02, 0.4
     out = case.run("rest", scene=case.write_scene("rest", {
@@ -137,5 +166,8 @@ if METHOD == "isph":
         plate(fed)
     for fed in case.pick((), (False, True)):
         cylinder(fed)
+    pulled()
+    for swim in case.pick((), (eel,)):
+        swim()
 case.plot("Force on the lowest 0.1 m of the wall", "t, s", "F, kN/m", curves)
 case.finish()
