@@ -157,11 +157,12 @@ TOBI_API int tobi_nest_name_fits(const char *name);
 /* One of the steps that tobi_world_advance takes to time t, s, which the last one hits exactly: the nests of
    the world follow after each. */
 TOBI_API tobi_status tobi_world_step_to(tobi_world *world, double t, tobi_error *err);
-/* Of a nest with feedback: gives the outer liquid in the box, two outer spacings from its sides, the velocity
-   that the nest has; else nothing. TOBI_INVALID for a world that is no nest. */
+/* Of a nest that has caught up with the outer world: bodies there that move by forces and lie in the box feel
+   in the next step what the nest pressed them with more, by isph. With feedback the outer liquid in the box,
+   two outer spacings from its sides, has the velocity of the nest. TOBI_INVALID for a world that is none. */
 TOBI_API tobi_status tobi_world_feed(tobi_world *nest, tobi_error *err);
-/* A tobi_motion_fn, rigid: as a body of an outer world goes, around the time of that; user: a tobi_nest_body,
-   which must outlive the world. */
+/* A tobi_motion_fn, rigid but for swimmers: as a body of an outer world goes, in the last step of that; user:
+   a tobi_nest_body, which must outlive the world. */
 typedef struct tobi_nest_body { const tobi_world *outer; int body; } tobi_nest_body;
 TOBI_API tobi_status tobi_nest_motion(void *user, double t, int64_t n, const double (*rest)[3],
                                       double (*position)[3], tobi_error *err);
