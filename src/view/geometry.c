@@ -1,6 +1,6 @@
 /* Triangles and balls in view space, from the meshes of bodies. Corners get the mean normal of their
-   vertex where the surface is smooth there, and the triangle's own at edges, so that balls are round and
-   boxes sharp. Drawback: the vertices of bodies are kept once for each triangle. */
+   vertex where the surface is smooth there, and the triangle's own at edges and in faces of 2-D bodies, so
+   that balls are round and boxes sharp. Drawback: the vertices of bodies are kept once for each triangle. */
 #include "view/image.h"
 #include <stdlib.h>
 
@@ -85,8 +85,9 @@ bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, int
         const vec sum = vec_add(vec_add(place[0], place[1]), place[2]);
         if (!(fabsf(sum.x) + fabsf(sum.y) + fabsf(sum.z) < INFINITY)) continue;
         vec face = vec_unit(vec_cross(vec_sub(place[1], place[0]), vec_sub(place[2], place[0]))), n[3];
+        const bool cap = c->camera.orthographic && fabsf(face.z) > 0.9999f;      /* of a 2-D body: flat */
         for (int k = 0; k < 3; k++)
-            n[k] = vec_scale(depth, vec_dot(face, normal[v[k]]) > smooth ? normal[v[k]] : face);
+            n[k] = vec_scale(depth, !cap && vec_dot(face, normal[v[k]]) > smooth ? normal[v[k]] : face);
         vec colors[3] = { color, color, color };
         for (int k = 0; k < 3 && number >= 0; k++) colors[k] = image_mark(m->uv[t][k], number);
         view_add_triangle(g, &cut, place, n, colors);

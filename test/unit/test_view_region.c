@@ -358,6 +358,48 @@ static void test_color_bar(void **state)
     }
 }
 
+/* A bar that tapers, a prism of stations with four corners each: its face to the eye is flat. */
+static void test_flat_bodies(void **state)
+{
+    (void)state;
+    enum { STATIONS = 9 };
+    static double corner[4*STATIONS][3];
+    static int32_t faces[8*(STATIONS - 1)][3];
+    static uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3];
+    for (int i = 0; i < STATIONS; i++)
+        for (int k = 0; k < 4; k++) {
+            const double half = 0.2 - 0.023*i;
+            corner[4*i + k][0] = 0.4 + 0.4*i;
+            corner[4*i + k][1] = 2 + (k == 0 || k == 3 ? -half : half);
+            corner[4*i + k][2] = k < 2 ? -0.2 : 0.2;
+        }
+    for (int i = 0; i + 1 < STATIONS; i++)
+        for (int32_t k = 0; k < 4; k++) {
+            const int32_t a = 4*i + k, b = 4*i + (k + 1)%4;
+            memcpy(faces[8*i + 2*k], (int32_t[3]){ a, b, b + 4 }, sizeof *faces);
+            memcpy(faces[8*i + 2*k + 1], (int32_t[3]){ a, b + 4, a + 4 }, sizeof *faces);
+        }
+    const tobi_picture_mesh bar = {
+        .vertex_count = 4*STATIONS, .vertices = (const double (*)[3])corner, .color = { 0.9f, 0.1f, 0.1f },
+        .triangle_count = 8*(STATIONS - 1), .triangles = (const int32_t (*)[3])faces };
+    tobi_picture p = tobi_default_picture();
+    tobi_error err = { 0 };
+    p.width = p.height = FLAT_SIDE;
+    p.dimension = 2;
+    p.box_max[0] = p.box_max[1] = 4;
+    p.mesh_count = 1, p.meshes = &bar;
+    if (tobi_picture_draw(&p, &rgb[0][0][0], &err)) fail_msg("%s", err.text);
+    const double scale = 0.92*FLAT_SIDE/4, middle = FLAT_SIDE/2;
+    const uint8_t *first = rgb[FLAT_SIDE/2][(int)(FLAT_SIDE/2 - 1.4*scale)];
+    assert_true(first[0] > 2*first[1]);
+    for (int i = 0; i < 13; i++)
+        for (int side = -1; side < 2; side++) {
+            const double x = 0.6 + 0.2*i, half = 0.2 - 0.023*(x - 0.4)/0.4;
+            const uint8_t *at = rgb[(int)(middle + 0.7*side*half*scale)][(int)(middle + scale*(x - 2))];
+            for (int c = 0; c < 3; c++) assert_true(abs(at[c] - first[c]) < 3);
+        }
+}
+
 int main(void)
 {
     char folder[] = "/tmp/tobiuo_region_XXXXXX", command[100];
@@ -366,7 +408,8 @@ int main(void)
                                         cmocka_unit_test(test_color_bar),
                                         cmocka_unit_test(test_isolines_of_groups),
                                         cmocka_unit_test(test_standing_in_water),
-                                        cmocka_unit_test(test_even_lines) };
+                                        cmocka_unit_test(test_even_lines),
+                                        cmocka_unit_test(test_flat_bodies) };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     if (chdir("/") == 0) snprintf(command, sizeof command, "rm -r %s", folder);
