@@ -63,7 +63,8 @@ def free_pointer(pointer):
 
 
 def raise_error(status, error):
-    raise Error(text_of(error.text) or text_of(lib.tobi_status_text(status)),
+    said = text_of(error.text).replace("--force", "force=True")      # the option of the program
+    raise Error(said or text_of(lib.tobi_status_text(status)),
                 text_of(lib.tobi_status_text(status)), text_of(error.key))
 
 

@@ -52,7 +52,7 @@ class Module(unittest.TestCase):
             if path.is_file() and path.suffix in (".csv", ".vtu", ".vtp", ".pvd") or path.name == "resolved.json":
                 self.assertEqual(path.read_bytes(), (pathlib.Path("theirs")/path.relative_to("mine")).read_bytes(), path)
         self.assertEqual(json.loads(pathlib.Path("theirs/summary.json").read_text())["outcome"], "complete")
-        with self.assertRaisesRegex(tobiuo.Error, "theirs"):
+        with self.assertRaisesRegex(tobiuo.Error, "theirs.*force=True"):
             tobiuo.run("pool.json", "theirs")
         tobiuo.run("pool.json", "theirs", until=0.05, force=True)
         self.assertEqual(tobiuo.Results("theirs").times[-1], 0.05)
