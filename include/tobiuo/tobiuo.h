@@ -152,6 +152,9 @@ TOBI_API int tobi_world_nest_box(const tobi_world *nest, double box[2][3], doubl
 /* How many particles a nest may come to have: as many as have room in its box and the rim, and, of a started
    world without openings, no more than the outer liquid makes. 0 for a world that is none. */
 TOBI_API double tobi_world_nest_most(const tobi_world *nest);
+/* A box of a nest goes on, to infinity, across each side of the domain that its rim would reach beyond, and
+   along axes that the dimension does not have. box, domain: lower and upper corner, m. */
+TOBI_API void tobi_nest_open_sides(double box[2][3], const double domain[2][3], double rim, int dimension);
 /* Whether a name fits a nest, and the folder of its results: letters, digits, _ and -, at most 63. */
 TOBI_API int tobi_nest_name_fits(const char *name);
 /* One of the steps that tobi_world_advance takes to time t, s, which the last one hits exactly: the nests of

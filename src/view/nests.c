@@ -1,6 +1,7 @@
 /* Nests in pictures: in their boxes the liquid of nests is shown, outside of them the scene's. Drawback: the
    particles of both are kept where only one is shown. */
 #include "tobiuo/drawing.h"
+#include "tobiuo/tobiuo.h"
 #include "view/draw.h"
 #include "view/drawing.h"
 #include <stdlib.h>
@@ -48,22 +49,22 @@ static bool find_middle(const tobi_looks *looks, int body, const tobi_moment *m,
     return false;
 }
 
-/* As the world does it (world/nest.c). */
 int tobi_nest_box(const tobi_looks *looks, const tobi_nest_def *nest, const tobi_moment *moment,
                   double box[2][3])
 {
-    double way[3] = { 0, 0, 0 }, middle[3];
+    double way[3] = { 0, 0, 0 }, middle[3], domain[2][3];
     if (!looks || !nest || !moment || !box) return 0;
     const int body = tobi_drawing_find_body(looks, nest->follow);
     if (nest->follow && (body < 0 || !find_middle(looks, body, moment, middle))) return 0;
     for (int a = 0; a < 3; a++) {
         if (nest->follow) way[a] = middle[a] - looks->bodies[body].middle[a];
-        const double rim = looks->rim/(looks->is_nest ? 1 : nest->refinement);
         box[0][a] = nest->box_min[a] + way[a];
         box[1][a] = nest->box_max[a] + way[a];
-        if (a >= looks->dimension || box[0][a] < looks->box_min[a] + rim) box[0][a] = -INFINITY;
-        if (a >= looks->dimension || box[1][a] > looks->box_max[a] - rim) box[1][a] = INFINITY;
+        domain[0][a] = looks->box_min[a];
+        domain[1][a] = looks->box_max[a];
     }
+    const double rim = looks->rim/(looks->is_nest ? 1 : nest->refinement);
+    tobi_nest_open_sides(box, (const double (*)[3])domain, rim, looks->dimension);
     return 1;
 }
 

@@ -6,6 +6,7 @@
 #include "world/absorb.h"
 #include "world/bodies.h"
 #include "world/nest.h"
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -84,7 +85,7 @@ static tobi_status read_state(const tobi_body *b, int k, tobi_store *f, tobi_loa
     tobi_world_name_body(k, "_nest", name);
     memset(l->finer, 0, sizeof l->finer);
     if (tobi_store_has(f, name)) TOBI_TRY(tobi_store_get(f, name, TOBI_F64, 7, 1, l->finer, err));
-    int good = l->finer[6] >= 0 && l->finer[6] <= TOBI_NEST_LIMIT;
+    int good = l->finer[6] >= 0 && l->finer[6] <= INT_MAX;
     for (int i = 0; i < 7; i++) good &= isfinite(l->finer[i]) != 0;
     for (int i = 0; i < TOBI_CONTROL_STATE; i++) good &= isfinite(l->memory[i]) != 0;
     for (int i = 0; i < TOBI_RIGID_DOUBLES; i++) good &= isfinite(l->state[i]) != 0;

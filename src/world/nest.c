@@ -162,15 +162,18 @@ void tobi_nest_middle(const tobi_simulation *outer, int body, double middle[3])
     for (int a = 0; a < 3; a++) middle[a] = 0.5*(low[a] + high[a]) - (b->is_absent ? b->away[a] : 0);
 }
 
-/* The box, a way from where it was at time 0. Where the rim would reach beyond a side, it goes on to that. */
+/* The box, a way from where it was at time 0. */
 static void place(tobi_nest *n, const tobi_box *box, const double way[3])
 {
+    double at[2][3], domain[2][3] = { { 0 } };
     for (int a = 0; a < 3; a++) {
-        n->lower[a] = n->start[0][a] + way[a];
-        n->upper[a] = n->start[1][a] + way[a];
-        if (a >= box->dimension || n->lower[a] < n->rim) n->lower[a] = -INFINITY;
-        if (a >= box->dimension || n->upper[a] > box->size[a] - n->rim) n->upper[a] = INFINITY;
+        at[0][a] = n->start[0][a] + way[a];
+        at[1][a] = n->start[1][a] + way[a];
+        domain[1][a] = box->size[a];
     }
+    tobi_nest_open_sides(at, (const double (*)[3])domain, n->rim, box->dimension);
+    memcpy(n->lower, at[0], sizeof n->lower);
+    memcpy(n->upper, at[1], sizeof n->upper);
 }
 
 static tobi_status find_body(const tobi_world *outer, const tobi_nest_def *def, tobi_nest *n, tobi_error *err)
