@@ -48,7 +48,7 @@ typedef struct tobi_rigid {
                                         last step                                                       */
     double air[6];                   /* N, N m about the centre: of air resistance in the last step     */
     double finer[6];                 /* N, N m about the centre: what a nest's liquid has more than the one
-                                        here, since that nest was last stepped                          */
+                                        here, in the last steps                                         */
     int finer_by;                    /* the number of that nest, from 1; 0 = none                       */
     int deforms;                     /* 1: a swimmer, which drifts by `moments`                         */
     double moments[3][3];            /* kg m2, rest axes: sum of m y0 y1^T, places about the centre at both

@@ -182,8 +182,8 @@
       "is any.")
 #define BODY_NEST(B) \
     V3(B, "nest_force", "N", finer, \
-       "What a nest pressed it with in the last step, less pressure_force and viscous_force; it moves the " \
-       "body too; where nests move bodies.") \
+       "What a nest pressed it with more than pressure_force and viscous_force, mean of the last steps; it " \
+       "moves the body too; where nests move bodies.") \
     V3(B, "nest_torque", "N m", (finer + 3), "About the centre of mass, of nest_force.") \
     B("nest_work", "J", work[TOBI_BY_NEST], "Done on it by nest_force and nest_torque since the start.")
 

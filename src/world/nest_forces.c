@@ -1,6 +1,6 @@
 /* A nest moves the bodies of the outer world: those that move by forces feel in the next outer step what its
    liquid pressed them with more than the outer liquid (docs/decisions/0158-nests-move-bodies.md). Drawback:
-   it comes a step late. */
+   it comes some steps late. */
 #include "world/nest.h"
 #include "base/error.h"
 #include "geom/vec3.h"
@@ -9,6 +9,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Of the difference, taken over in each step: the outer answer to a force is partly a step late, and with all
+   of it a light plate would swing ever more. */
+static const double SHARE = 0.2;
 
 /* N, N m about the centre: of the liquid in the last step. */
 static void find_press(const tobi_body *b, double press[6])
@@ -86,7 +90,8 @@ void tobi_nest_press(tobi_world *nest, tobi_world *outer)
         const int within = is_within(n, nest->sim.def.dimension, b);
         if (!within && r->finer_by != n->number) continue;
         find_press(b, here);
-        for (int a = 0; a < 6 && within; a++) finer[a] = nest->pressed[k][a]/t - here[a];
+        for (int a = 0; a < 6 && within; a++)
+            finer[a] = r->finer[a] + SHARE*(nest->pressed[k][a]/t - here[a] - r->finer[a]);
         tobi_rigid_set_finer(outer->dynamics, k, finer);
         r->finer_by = within ? n->number : 0;
     }
