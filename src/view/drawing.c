@@ -194,26 +194,21 @@ static void take_own_color(tobi_drawing *d, int64_t to, int color)
     memcpy(d->own[to], shows ? none : d->palette[color], sizeof none);
 }
 
-/* m: how far the surface around a particle may reach beyond the place that it is shown in, in spacings. */
-static const double MARGIN = 6;
-
-static int nest_of(const tobi_moment *m, int64_t i) { return m->nest ? m->nest[i] : m->nest_count > 0; }
-
 /* Without nests what is theirs is left out, with them what surfaces do not need. */
 static int is_taken(const tobi_drawing *d, int64_t i)
 {
     const tobi_moment *m = d->moment;
-    const int nest = nest_of(m, i);
+    const int nest = view_moment_nest(m, i);
     if (!d->nest) return nest == 0 || !m->nest;
     const double spacing = nest ? m->nest_spacing[nest - 1] : d->looks->spacing;
-    const double most = d->view->look == TOBI_LOOK_PARTICLES ? 0 : MARGIN*spacing;
+    const double most = d->view->look == TOBI_LOOK_PARTICLES ? 0 : VIEW_NEST_MARGIN*spacing;
     return view_beyond_nests((const double (*)[2][3])m->nests, m->nest_count, nest, m->positions[i]) <= most;
 }
 
 /* Its own size; liquids of different nests have different surfaces. */
 static void take_nest(tobi_drawing *d, int64_t i, int64_t to)
 {
-    const int nest = nest_of(d->moment, i);
+    const int nest = view_moment_nest(d->moment, i);
     d->nest[to] = (uint8_t)nest;
     if (nest) d->radii[to] = 0.5*d->moment->nest_spacing[nest - 1];
     d->group[to] -= nest*(d->looks->material_count + 1);

@@ -35,3 +35,12 @@ tobi_status tobi_drawing_make_palette(tobi_drawing *d, const tobi_moment_field *
 int tobi_drawing_color(const tobi_drawing *d, int material, int part, int piece);
 /* A body or line by the name of its surface, or -1. */
 int tobi_drawing_find_body(const tobi_looks *s, const char *name);
+
+/* Spacings: how far from the place where it is shown a liquid is kept, for its surface there. */
+#define VIEW_NEST_MARGIN 6.0
+
+/* Of a particle: 0 of the scene, or 1 + the nest. In the moment of a nest alone all are the first's. */
+static inline int view_moment_nest(const tobi_moment *m, int64_t i)
+{
+    return m->nest ? m->nest[i] : m->nest_count > 0;
+}

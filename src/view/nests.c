@@ -27,8 +27,8 @@ double view_beyond_nests(const double (*boxes)[2][3], int count, int nest, const
 int tobi_moment_shows(const tobi_moment *m, int64_t i)
 {
     if (!m || i < 0 || i >= m->count) return 0;
-    const int nest = m->nest ? m->nest[i] : m->nest_count > 0;
-    return view_beyond_nests((const double (*)[2][3])m->nests, m->nest_count, nest, m->positions[i]) <= 0;
+    return view_beyond_nests((const double (*)[2][3])m->nests, m->nest_count, view_moment_nest(m, i),
+                             m->positions[i]) <= 0;
 }
 
 /* Of the box around the surface of a body; false: the moment has none. */
@@ -68,9 +68,6 @@ int tobi_nest_box(const tobi_looks *looks, const tobi_nest_def *nest, const tobi
     return 1;
 }
 
-/* Spacings: how far from its box liquid of a nest is kept, for surfaces. */
-static const double MARGIN = 6;
-
 typedef struct joining {
     tobi_moment *to;
     const tobi_moment *from;
@@ -81,7 +78,7 @@ static bool find_rows(joining *j, const double box[2][3], double spacing)
 {
     j->row = malloc(((size_t)j->from->count + 1)*sizeof *j->row);
     for (int64_t i = 0; j->row && i < j->from->count; i++)
-        if (find_outside(box, j->from->positions[i]) <= MARGIN*spacing) j->row[j->count++] = i;
+        if (find_outside(box, j->from->positions[i]) <= VIEW_NEST_MARGIN*spacing) j->row[j->count++] = i;
     return j->row != NULL;
 }
 
