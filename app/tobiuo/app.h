@@ -122,8 +122,20 @@ tobi_scene *load_scene(const char *path, overrides *set);
 /* Says which files of the scene are not as the run in dir has read them, and that `what` goes on. */
 void say_changed_files(const tobi_scene *scene, const char *dir, const char *what);
 
-/* options.c: parsing of values; a usage error ends the program as argp does. */
-/* argp_parse, which may run out of memory before it has looked at anything: then the program ends. */
+/* help.c */
+void print_usage(FILE *file);
+/* "tobiuo run: ..." on stderr; ends the program with EXIT_USAGE. The format is looked up by the caller. */
+void usage_error(const struct argp_state *state, const char *format, ...)
+    __attribute__((format(printf, 2, 3), noreturn));
+/* Options of all commands, and their parser. */
+const struct argp_option *common_options(void);
+error_t parse_common(int key, char *value, struct argp_state *state);
+/* Bytes of the text that stay on one line: a word, or a letter of Japanese with the marks at it. */
+size_t piece_bytes(const char *text);
+
+/* options.c: parsing of values; a usage error ends the program. */
+/* argp_parse, with the options of all commands. It may run out of memory before it has looked at anything:
+   then the program ends. */
 void parse_arguments(const struct argp *argp, int argc, char **argv, void *input);
 double parse_positive(struct argp_state *state, const char *option, const char *text);
 /* The same, and 0: a time. */
@@ -139,10 +151,6 @@ enum { KEY_UNTIL = 256, KEY_SPACING, KEY_SET, KEY_LANGUAGE, KEY_OWN };
     { "spacing", KEY_SPACING, "M", 0, "particle spacing of the fluid, m", 0 }, \
     { "set", KEY_SET, "PATH=VALUE", 0, \
       "change any value of the scene, e.g. fluids[0].viscosity=0.1", 0 }
-/* The option of commands that write for readers. */
-#define LANGUAGE_OPTION \
-    { "language", KEY_LANGUAGE, "LANGUAGE", 0, \
-      "ja (Japanese) or en (English); by default as LC_ALL, LC_MESSAGES or LANG says", 0 }
 void parse_language(struct argp_state *state, const char *value);
 error_t parse_scene_option(struct argp_state *state, int key, const char *value, overrides *set,
                            const char **scene);

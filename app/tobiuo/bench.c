@@ -28,7 +28,7 @@ static const struct argp_option options[] = {
 static int parse_count(struct argp_state *state, const char *option, const char *text)
 {
     double value = parse_positive(state, option, text);
-    if (value != (int)value) argp_error(state, tr("%s: '%s' is not a whole number"), option, text);
+    if (value != (int)value) usage_error(state, tr("%s: '%s' is not a whole number"), option, text);
     return (int)value;
 }
 
@@ -48,7 +48,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_METHOD: o->method = value; break;
     case KEY_CSV: o->csv = value; break;
     case ARGP_KEY_ARG:
-        if (o->which) argp_error(state, tr("one CASE only"));
+        if (o->which) usage_error(state, tr("one CASE only"));
         o->which = value;
         break;
     default: return ARGP_ERR_UNKNOWN;
@@ -238,7 +238,7 @@ const struct argp bench_argp = {
     .options = options,
     .parser = parse,
     .args_doc = "[CASE]",
-    .doc = "Measure the speed of this machine.\v"
+    .doc = "Measure the speed of this machine.\n"
            "CASE is\n"
            "  small   the settled tank at 8 mm, 55 000 particles, seconds (default)\n"
            "  tank    the settled tank at 4 mm, 466 000 particles, a minute\n"

@@ -7,7 +7,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
 {
     const char **topic = state->input;
     if (key != ARGP_KEY_ARG) return ARGP_ERR_UNKNOWN;
-    if (*topic) argp_error(state, tr("one WORD only"));
+    if (*topic) usage_error(state, tr("one WORD only"));
     *topic = value;
     return 0;
 }

@@ -36,18 +36,19 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case 'o':
         if (!is_png(value))
-            argp_error(state, tr("--out: '%s' is no picture that can be made: its name ends in .png"), value);
+            usage_error(state, tr("--out: '%s' is no picture that can be made: its name ends in .png"),
+                        value);
         o->out = value;
         break;
     case KEY_OUTPUT:
         o->output = strtoll(value, &end, 10);
         if (end == value || *end || o->output < 0)
-            argp_error(state, tr("--output: '%s' is not a number from 0 on"), value);
+            usage_error(state, tr("--output: '%s' is not a number from 0 on"), value);
         break;
     case KEY_TIME:
         o->time = strtod(value, &end);
         if (end == value || *end || !(o->time >= 0))
-            argp_error(state, tr("--time: '%s' is not a number from 0 on"), value);
+            usage_error(state, tr("--time: '%s' is not a number from 0 on"), value);
         break;
     case KEY_VIEW: o->view = value; break;
     case KEY_VALUE: overrides_add(&o->set, "%s", value); break;

@@ -32,13 +32,13 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case KEY_AMOUNT:
         o->amount = parse_positive(state, "--amount", value);
-        if (o->amount > 1000) argp_error(state, tr("--amount: %s is not above 0 to 1000"), value);
+        if (o->amount > 1000) usage_error(state, tr("--amount: %s is not above 0 to 1000"), value);
         break;
     case KEY_LIFETIME: o->lifetime = parse_positive(state, "--lifetime", value); break;
     case KEY_MOST:
         o->most = strtoll(value, &end, 10);
         if (end == value || *end || o->most < 1 || o->most > 1 << 30)
-            argp_error(state, tr("--most: '%s' is not a number from 1 to %d"), value, 1 << 30);
+            usage_error(state, tr("--most: '%s' is not a number from 1 to %d"), value, 1 << 30);
         break;
     case KEY_THREADS: o->threads = parse_threads(state, value); break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);

@@ -48,8 +48,8 @@ static error_t parse(int key, char *value, struct argp_state *state)
         o->path = import_path(o->scene);
         if (!o->out && is_setting(o->path)) o->out = o->beside = place_beside(o->path);
         if (!o->out && access(o->path, F_OK) != 0)
-            argp_error(state, tr("there is no %s: a scene, or a folder with a setting.json"), o->path);
-        if (!o->out || !*o->out) argp_error(state, tr("--out says where the native scene goes"));
+            usage_error(state, tr("there is no %s: a scene, or a folder with a setting.json"), o->path);
+        if (!o->out || !*o->out) usage_error(state, tr("--out says where the native scene goes"));
         break;
     default: return parse_argument(state, key, value, "SCENE", &o->scene);
     }

@@ -34,7 +34,7 @@ static void parse_place(struct argp_state *state, const char *text, double at[3]
     int end = 0, count = sscanf(text, "%lf,%lf%n,%lf%n", &at[0], &at[1], &end, &at[2], &end);
     if (count == 2) at[2] = 0;
     if (count < 2 || text[end] || !isfinite(at[0]) || !isfinite(at[1]) || !isfinite(at[2]))
-        argp_error(state, tr("--at wants X,Y,Z (or X,Y), not '%s'"), text);
+        usage_error(state, tr("--at wants X,Y,Z (or X,Y), not '%s'"), text);
 }
 
 static error_t parse(int key, char *value, struct argp_state *state)
@@ -43,12 +43,12 @@ static error_t parse(int key, char *value, struct argp_state *state)
     char *end;
     switch (key) {
     case 'o':
-        if (!*value) argp_error(state, tr("--out is empty"));
+        if (!*value) usage_error(state, tr("--out is empty"));
         o->out = value;
         break;
     case 'f':
         if (strcmp(value, "svg") != 0 && strcmp(value, "png") != 0)
-            argp_error(state, tr("--format: '%s' is neither svg nor png"), value);
+            usage_error(state, tr("--format: '%s' is neither svg nor png"), value);
         o->kernels.format = value;
         break;
     case KEY_AT:
@@ -57,11 +57,11 @@ static error_t parse(int key, char *value, struct argp_state *state)
         break;
     case KEY_ID:
         o->id = strtoll(value, &end, 10);
-        if (end == value || *end || o->id < 0) argp_error(state, tr("--id: '%s' is no particle_id"), value);
+        if (end == value || *end || o->id < 0) usage_error(state, tr("--id: '%s' is no particle_id"), value);
         break;
     default: return parse_scene_option(state, key, value, &o->set, &o->scene);
     }
-    if (o->has_at && o->id >= 0) argp_error(state, tr("--at and --id: one of them"));
+    if (o->has_at && o->id >= 0) usage_error(state, tr("--at and --id: one of them"));
     return 0;
 }
 

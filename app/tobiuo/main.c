@@ -45,16 +45,6 @@ enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 const command *command_at(int index) { return index < COMMAND_COUNT ? &commands[index] : NULL; }
 
-static void print_usage(FILE *file)
-{
-    fprintf(file, "usage: tobiuo COMMAND [ARGUMENTS]\n\n");
-    for (int k = 0; k < COMMAND_COUNT; k++)
-        fprintf(file, "  %s%-8s%s %-10s %s\n", colour(file, BOLD), commands[k].name, colour(file, PLAIN),
-                commands[k].arguments, commands[k].doc);
-    fprintf(file, "\n\"tobiuo help COMMAND\" lists the options of a command. Begin with:\n"
-                  "  tobiuo new dam_break my_dam && tobiuo run my_dam\n");
-}
-
 static int complain_command(const char *word)
 {
     const char *names[COMMAND_COUNT];
@@ -66,22 +56,13 @@ static int complain_command(const char *word)
     return EXIT_USAGE;
 }
 
-/* argp knows --help and -? only. */
-static void spell_help(int argc, char **argv)
-{
-    static char help[] = "--help";
-    for (int k = 1; k < argc && strcmp(argv[k], "--") != 0; k++)
-        if (strcmp(argv[k], "-h") == 0) argv[k] = help;
-}
-
 static int run_command(int argc, char **argv)
 {
     for (int k = 0; k < COMMAND_COUNT; k++) {
         if (strcmp(argv[0], commands[k].name) != 0) continue;
         char name[32];
         snprintf(name, sizeof name, "tobiuo %s", commands[k].name);
-        argv[0] = name;                       /* argp's messages begin with it */
-        spell_help(argc, argv);
+        argv[0] = name;                       /* messages of usage begin with it */
         return commands[k].run(argc, argv);
     }
     return complain_command(argv[0]);
@@ -132,6 +113,19 @@ static void keep_memory(void)
     mallopt(M_TRIM_THRESHOLD, 512 << 20);
 }
 
+/* "tobiuo --language ja ...": how many words of the arguments that is; -1: a mistake. */
+static int take_language(int argc, char **argv)
+{
+    static const char option[] = "--language";
+    const size_t length = strlen(option);
+    if (argc < 2 || strncmp(argv[1], option, length) != 0) return 0;
+    const char *value = argv[1][length] == '=' ? argv[1] + length + 1 : argc > 2 ? argv[2] : "";
+    if (argv[1][length] && argv[1][length] != '=') return 0;
+    if (choose_language(value) == 0) return argv[1][length] ? 1 : 2;
+    complain("--language: '%s' is neither ja nor en", value);
+    return -1;
+}
+
 int main(int argc, char **argv)
 {
     keep_memory();
@@ -141,6 +135,9 @@ int main(int argc, char **argv)
     wait_without_spinning(argv);
     argp_err_exit_status = EXIT_USAGE;
     choose_language(NULL);
+    const int taken = take_language(argc, argv);
+    if (taken < 0) return EXIT_USAGE;
+    argc -= taken, argv += taken;
     if (argc < 2) {
         print_usage(stderr);
         return EXIT_USAGE;

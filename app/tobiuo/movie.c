@@ -77,7 +77,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case 'o':
         if (movie_objection(value) && !is_png(value))
-            argp_error(state, tr("--out: '%s' %s, that of a sheet in .png"), value, movie_objection(value));
+            usage_error(state, tr("--out: '%s' %s, that of a sheet in .png"), value, movie_objection(value));
         o->out = value;
         break;
     case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;

@@ -50,7 +50,10 @@ static int is_option(const char *text) { return strncmp(text, "--", 2) == 0 && t
 
 static int asks_help(const char *text)
 {
-    return strcmp(text, "--help") == 0 || strcmp(text, "-?") == 0 || strcmp(text, "--usage") == 0;
+    static const char *const words[] = { "--help", "-h", "-?", "--usage" };
+    for (int k = 0; k < 4; k++)
+        if (strcmp(text, words[k]) == 0) return 1;
+    return 0;
 }
 
 int wants_family(int argc, char **argv)

@@ -6,7 +6,11 @@
 
 void parse_arguments(const struct argp *argp, int argc, char **argv, void *input)
 {
-    const error_t code = argp_parse(argp, argc, argv, 0, NULL, input);
+    const struct argp common = { .options = common_options(), .parser = parse_common };
+    const struct argp_child children[] = { { .argp = &common }, { 0 } };
+    struct argp whole = *argp;
+    whole.children = children;
+    const error_t code = argp_parse(&whole, argc, argv, ARGP_NO_HELP | ARGP_NO_ERRS, NULL, input);
     if (code) exit(complain("the arguments cannot be read: %s", tr(strerror(code))));
 }
 
@@ -15,7 +19,7 @@ double parse_positive(struct argp_state *state, const char *option, const char *
     char *end;
     double value = strtod(text, &end);
     if (end == text || *end != '\0' || !isfinite(value) || value <= 0.0)
-        argp_error(state, tr("%s: '%s' is not a positive number"), option, text);
+        usage_error(state, tr("%s: '%s' is not a positive number"), option, text);
     return value;
 }
 
@@ -24,7 +28,7 @@ double parse_time(struct argp_state *state, const char *option, const char *text
     char *end;
     double value = strtod(text, &end);
     if (end == text || *end != '\0' || !isfinite(value) || value < 0)
-        argp_error(state, tr("%s: '%s' is not a number from 0 on"), option, text);
+        usage_error(state, tr("%s: '%s' is not a number from 0 on"), option, text);
     return value;
 }
 
@@ -33,14 +37,14 @@ int parse_threads(struct argp_state *state, const char *text)
     char *end;
     long value = strtol(text, &end, 10);
     if (end == text || *end != '\0' || value < 0 || value > 4096)
-        argp_error(state, tr("--threads: '%s' is not a number from 0 (all cores) to 4096"), text);
+        usage_error(state, tr("--threads: '%s' is not a number from 0 (all cores) to 4096"), text);
     return (int)value;
 }
 
 void parse_language(struct argp_state *state, const char *value)
 {
     if (choose_language(value) != 0)
-        argp_error(state, tr("--language: '%s' is neither ja nor en"), value);
+        usage_error(state, tr("--language: '%s' is neither ja nor en"), value);
 }
 
 error_t parse_argument(struct argp_state *state, int key, const char *value, const char *name,
@@ -49,13 +53,13 @@ error_t parse_argument(struct argp_state *state, int key, const char *value, con
     switch (key) {
     case ARGP_KEY_ARG:
         if (*argument && strchr(value, '='))
-            argp_error(state, tr("one %s only; a value is changed by --set %s"), name, value);
-        if (*argument) argp_error(state, tr("one %s only"), name);
-        if (!*value) argp_error(state, tr("%s is empty"), name);
+            usage_error(state, tr("one %s only; a value is changed by --set %s"), name, value);
+        if (*argument) usage_error(state, tr("one %s only"), name);
+        if (!*value) usage_error(state, tr("%s is empty"), name);
         *argument = value;
         return 0;
     case ARGP_KEY_END:
-        if (!*argument) argp_error(state, tr("which %s?"), name);
+        if (!*argument) usage_error(state, tr("which %s?"), name);
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -73,7 +77,7 @@ error_t parse_scene_option(struct argp_state *state, int key, const char *value,
         return 0;
     case KEY_SET:
         if (!strchr(value, '=') || value[0] == '=')
-            argp_error(state, tr("--set wants PATH=VALUE, not '%s'"), value);
+            usage_error(state, tr("--set wants PATH=VALUE, not '%s'"), value);
         overrides_add(set, "%s", value);
         return 0;
     default: return parse_argument(state, key, value, "SCENE", scene);

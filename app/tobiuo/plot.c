@@ -16,7 +16,6 @@ enum { KEY_SCENE = KEY_OWN };
 
 static const struct argp_option options[] = {
     { "format", 'f', "FORMAT", 0, "svg (default) or png", 0 },
-    LANGUAGE_OPTION,
     { "scene", KEY_SCENE, "SCENE", 0, "take the references of this scene, not those of the run", 0 },
     { 0 }
 };
@@ -27,10 +26,9 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case 'f':
         if (strcmp(value, "svg") != 0 && strcmp(value, "png") != 0)
-            argp_error(state, tr("--format: '%s' is neither svg nor png"), value);
+            usage_error(state, tr("--format: '%s' is neither svg nor png"), value);
         o->format = value;
         break;
-    case KEY_LANGUAGE: parse_language(state, value); break;
     case KEY_SCENE: o->scene = value; break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }

@@ -16,7 +16,6 @@ enum { KEY_FORCE = KEY_OWN, KEY_FROM };
 static const struct argp_option options[] = {
     { "out", 'o', "FILE", 0, "the page (DIR/report.html)", 0 },
     { "from", KEY_FROM, "S", 0, "means, least and most of the tables begin at this time, s (0)", 0 },
-    LANGUAGE_OPTION,
     { "force", KEY_FORCE, NULL, 0, "replace FILE", 0 },
     { 0 }
 };
@@ -26,11 +25,10 @@ static error_t parse(int key, char *value, struct argp_state *state)
     report_options *o = state->input;
     switch (key) {
     case 'o':
-        if (!*value) argp_error(state, tr("--out is empty"));
+        if (!*value) usage_error(state, tr("--out is empty"));
         o->out = value;
         break;
     case KEY_FROM: o->from = parse_time(state, "--from", value); break;
-    case KEY_LANGUAGE: parse_language(state, value); break;
     case KEY_FORCE: o->force = 1; break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }

@@ -17,7 +17,6 @@ static const struct argp_option options[] = {
     { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s (that of the run before)", 0 },
     { "threads", 't', "N", 0, "threads (0 = all cores)", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
-    LANGUAGE_OPTION,
     { 0 }
 };
 
@@ -27,7 +26,6 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case 't': overrides_add(&o->set, "threads=%d", parse_threads(state, value)); break;
     case 'q': o->quiet = 1; break;
-    case KEY_LANGUAGE: parse_language(state, value); break;
     case KEY_UNTIL: overrides_add(&o->set, "end_time=%.17g", parse_positive(state, "--until", value)); break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }

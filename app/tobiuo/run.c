@@ -31,7 +31,6 @@ static const struct argp_option options[] = {
     { "window", KEY_WINDOW, NULL, 0, "watch the run in a window; the key h lists its keys", 0 },
     { "keys", KEY_KEYS, "LETTERS", 0, "keys typed into the window at the start", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
-    LANGUAGE_OPTION,
     { 0 }
 };
 
@@ -40,21 +39,20 @@ static error_t parse(int key, char *value, struct argp_state *state)
     run_options *o = state->input;
     switch (key) {
     case 'o':
-        if (!*value) argp_error(state, tr("--out is empty"));
+        if (!*value) usage_error(state, tr("--out is empty"));
         o->out = value;
         break;
     case 't': overrides_add(&o->set, "threads=%d", parse_threads(state, value)); break;
     case 'q': o->quiet = 1; break;
-    case KEY_LANGUAGE: parse_language(state, value); break;
     case KEY_FRAMES: overrides_add(&o->set, "output.frames=true"); break;
     case KEY_MOVIE:
-        if (movie_objection(value)) argp_error(state, tr("--movie: '%s' %s"), value, movie_objection(value));
+        if (movie_objection(value)) usage_error(state, tr("--movie: '%s' %s"), value, movie_objection(value));
         overrides_add(&o->set, "output.frames=true");
         o->movie = value;
         break;
     case KEY_SURFACE:
         o->surface = surface_format(value);
-        if (!o->surface) argp_error(state, tr("--surface: '%s' is none of vtp, obj, ply, stl, glb"), value);
+        if (!o->surface) usage_error(state, tr("--surface: '%s' is none of vtp, obj, ply, stl, glb"), value);
         break;
     case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;
     case KEY_FOAM: o->foam = 1; break;
@@ -62,7 +60,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_WINDOW: o->window = 1; break;
     case KEY_KEYS: o->keys = value; break;
     case ARGP_KEY_SUCCESS:
-        if (o->slow > 0 && !o->movie && !o->surface) argp_error(state, tr("--slow needs --movie FILE"));
+        if (o->slow > 0 && !o->movie && !o->surface) usage_error(state, tr("--slow needs --movie FILE"));
         break;
     default: return parse_scene_option(state, key, value, &o->set, &o->scene);
     }

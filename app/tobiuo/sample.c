@@ -39,18 +39,18 @@ static void check_name(struct argp_state *state, const char *name)
 {
     int good = *name && strlen(name) <= 60;
     for (const char *c = name; *c; c++) good &= isalnum((unsigned char)*c) || strchr("-_", *c);
-    if (!good) argp_error(state, tr("--name: '%s' is not of 1 to 60 letters, digits, - and _"), name);
+    if (!good) usage_error(state, tr("--name: '%s' is not of 1 to 60 letters, digits, - and _"), name);
 }
 
 static void check_whole(sample_options *o, struct argp_state *state)
 {
     const int ways = (o->line_count > 0) + (o->points != NULL) + (o->box != NULL);
-    if (ways != 1) argp_error(state, tr("%s of --line, --points, --box"), ways ? tr("only one")
+    if (ways != 1) usage_error(state, tr("%s of --line, --points, --box"), ways ? tr("only one")
                               : tr("where? one"));
-    if (o->fluid && o->solid) argp_error(state, tr("--fluid or --solid, not both"));
-    if (!(o->from <= o->until)) argp_error(state, tr("--from %g lies behind --until %g"), o->from, o->until);
-    if (o->cell > 0 && !o->box) argp_error(state, tr("--cell is for --box"));
-    if (o->count > 0 && !o->line_count) argp_error(state, tr("--count is for --line"));
+    if (o->fluid && o->solid) usage_error(state, tr("--fluid or --solid, not both"));
+    if (!(o->from <= o->until)) usage_error(state, tr("--from %g lies behind --until %g"), o->from, o->until);
+    if (o->cell > 0 && !o->box) usage_error(state, tr("--cell is for --box"));
+    if (o->count > 0 && !o->line_count) usage_error(state, tr("--count is for --line"));
     if (o->count == 0) o->count = 50;
     if (!o->name) o->name = o->line_count ? "line" : o->points ? "points" : "box";
 }
@@ -62,7 +62,7 @@ static error_t parse_more(int key, char *value, struct argp_state *state, sample
     case KEY_COUNT:
         o->count = (int)fmin(fmax((double)strtoll(value, &end, 10), -1), 2e9);
         if (end == value || *end || o->count < 2 || o->count > 1000000)
-            argp_error(state, tr("--count: '%s' is not a whole number from 2 to 1000000"), value);
+            usage_error(state, tr("--count: '%s' is not a whole number from 2 to 1000000"), value);
         return 0;
     case KEY_NAME: check_name(state, o->name = value); return 0;
     case KEY_THREADS: o->threads = parse_threads(state, value); return 0;
@@ -77,7 +77,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     sample_options *o = state->input;
     switch (key) {
     case KEY_LINE:
-        if (o->line_count == SAMPLE_LINES) argp_error(state, tr("--line: at most %d times"), SAMPLE_LINES);
+        if (o->line_count == SAMPLE_LINES) usage_error(state, tr("--line: at most %d times"), SAMPLE_LINES);
         o->line[o->line_count++] = value;
         break;
     case KEY_POINTS: o->points = value; break;
@@ -92,7 +92,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_SOLID: o->solid = value; break;
     case 'f':
         if (strcmp(value, "svg") != 0 && strcmp(value, "png") != 0)
-            argp_error(state, tr("--format: '%s' is neither svg nor png"), value);
+            usage_error(state, tr("--format: '%s' is neither svg nor png"), value);
         o->format = value;
         break;
     default: return parse_more(key, value, state, o);

@@ -191,7 +191,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
 {
     new_options *o = state->input;
     if (key != ARGP_KEY_ARG) return key == ARGP_KEY_END ? 0 : ARGP_ERR_UNKNOWN;
-    if (o->dir) argp_error(state, tr("one NAME and one DIR only"));
+    if (o->dir) usage_error(state, tr("one NAME and one DIR only"));
     if (o->name) o->dir = value;
     else o->name = value;
     return 0;

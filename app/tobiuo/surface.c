@@ -47,18 +47,18 @@ static error_t parse(int key, char *value, struct argp_state *state)
     switch (key) {
     case 'f':
         o->format = surface_format(value);
-        if (!o->format) argp_error(state, tr("--format: '%s' is none of vtp, obj, ply, stl, glb"), value);
+        if (!o->format) usage_error(state, tr("--format: '%s' is none of vtp, obj, ply, stl, glb"), value);
         break;
     case KEY_CELL:
         o->cell = parse_positive(state, "--cell", value);
-        if (!(o->cell >= 0.1 && o->cell <= 2)) argp_error(state,
+        if (!(o->cell >= 0.1 && o->cell <= 2)) usage_error(state,
                                                           tr("--cell: %s is not from 0.1 to 2 spacings"),
                                                           value);
         break;
     case KEY_SMOOTH:
         o->smooth = (int)strtol(value, &end, 10);
         if (end == value || *end || o->smooth < 0 || o->smooth > 100)
-            argp_error(state, tr("--smooth: '%s' is not a number from 0 to 100"), value);
+            usage_error(state, tr("--smooth: '%s' is not a number from 0 to 100"), value);
         break;
     case KEY_FIELD: o->field = value; break;
     case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;

@@ -52,24 +52,24 @@ static void add_axis(sweep *s, struct argp_state *state, const char *text)
 {
     const char *equals = strchr(text, '=');
     if (!equals || equals == text || !equals[1])
-        argp_error(state, tr("--set wants PATH=A,B,..., not '%s'"), text);
+        usage_error(state, tr("--set wants PATH=A,B,..., not '%s'"), text);
     s->axes = grow(s->axes, (size_t)s->axis_count + 1, sizeof *s->axes);
     sweep_axis *a = &s->axes[s->axis_count++];
     *a = (sweep_axis){ .path = strndup(text, (size_t)(equals - text)) };
     for (const char *at = equals + 1;;) {
         const char *end = end_of_value(at);
-        if (end == at) argp_error(state, tr("--set %s: a value is empty"), text);
+        if (end == at) usage_error(state, tr("--set %s: a value is empty"), text);
         a->value = grow(a->value, (size_t)a->count + 1, sizeof *a->value);
         char *value = a->value[a->count] = strndup(at, (size_t)(end - at));
         for (int k = 0; k < a->count; k++)
             if (strcmp(a->value[k], value) == 0)
-                argp_error(state, tr("--set %s: %s is there twice"), text, value);
+                usage_error(state, tr("--set %s: %s is there twice"), text, value);
         a->count++;
         if (!*end) break;
         at = end + 1;
     }
     for (int k = 0; k < s->axis_count - 1; k++)
-        if (strcmp(s->axes[k].path, a->path) == 0) argp_error(state, tr("--set %s is given twice"), a->path);
+        if (strcmp(s->axes[k].path, a->path) == 0) usage_error(state, tr("--set %s is given twice"), a->path);
 }
 
 static const char *last_key(const char *path)
@@ -165,7 +165,7 @@ static int parse_count(struct argp_state *state, const char *option, const char 
     char *end;
     const long value = strtol(text, &end, 10);
     if (end == text || *end || value < least || value > most)
-        argp_error(state, tr("%s: '%s' is not a number from %ld to %ld"), option, text, least, most);
+        usage_error(state, tr("%s: '%s' is not a number from %ld to %ld"), option, text, least, most);
     return (int)value;
 }
 
@@ -179,7 +179,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
         s->until = value;
         break;
     case 'o':
-        if (!*value) argp_error(state, tr("--out is empty"));
+        if (!*value) usage_error(state, tr("--out is empty"));
         s->dir = value;
         break;
     case 'j': s->jobs = parse_count(state, "--jobs", value, 1, 256); break;

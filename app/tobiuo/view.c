@@ -30,7 +30,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     } else if (key == KEY_SIZE) {
         if (sscanf(value, "%dx%d%c", &o->width, &o->height, &end) != 2 || o->width < 100 || o->height < 100 ||
             o->width > 8192 || o->height > 8192)
-            argp_error(state, tr("--size: '%s' is not like 1280x720, each from 100 to 8192"), value);
+            usage_error(state, tr("--size: '%s' is not like 1280x720, each from 100 to 8192"), value);
     } else {
         return parse_argument(state, key, value, "DIR", &o->dir);
     }

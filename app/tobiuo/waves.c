@@ -34,16 +34,16 @@ static error_t parse(int key, char *value, struct argp_state *state)
     wave_options *o = state->input;
     switch (key) {
     case 'g':
-        if (o->group_count == GROUPS) argp_error(state, tr("--gauges: at most %d times"), GROUPS);
+        if (o->group_count == GROUPS) usage_error(state, tr("--gauges: at most %d times"), GROUPS);
         o->groups[o->group_count++] = value;
         break;
     case 'r':
-        if (o->response_count == RESPONSES) argp_error(state, tr("--response: at most %d times"), RESPONSES);
+        if (o->response_count == RESPONSES) usage_error(state, tr("--response: at most %d times"), RESPONSES);
         o->responses[o->response_count++] = value;
         break;
     case 'f':
         if (strcmp(value, "svg") != 0 && strcmp(value, "png") != 0)
-            argp_error(state, tr("--format: '%s' is neither svg nor png"), value);
+            usage_error(state, tr("--format: '%s' is neither svg nor png"), value);
         o->format = value;
         break;
     case KEY_FROM: o->from = parse_time(state, "--from", value); break;

@@ -17,6 +17,9 @@ import sys
 
 MARKED = re.compile(r'\b(?:tr|TR|TEXT)\(\s*("(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)\s*\)')
 REQUIRED = re.compile(r'\.required = true,[^{}]*?\.doc\s*=\s*("(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)')
+OPTION = re.compile(r'\{\s*"[a-z]+",\s*[^,{}]+,\s*(?:NULL|"(?:[^"\\]|\\.)*"),\s*0,\s*("(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)')
+COMMAND = re.compile(r'\{ "[a-z]+", "[^"]*", ("(?:[^"\\]|\\.)*"),\s+tobiuo_')
+COMMAND_DOC = re.compile(r'\.doc\s*=\s*("(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)')
 STAGE = re.compile(r"tobi_stage_end\(([^;]*);")
 PIECE = re.compile(r'"((?:[^"\\]|\\.)*)"')
 CONVERSION = re.compile(r"%(?P<place>\d+\$)?(?P<as>[-+#0]*(?:\*|\d+)?(?:\.(?:\*|\d+))?(?:hh|h|ll|l|z|j|t)?[diouxXeEfgGcsp%])")
@@ -123,6 +126,16 @@ def complaints(root):
                 yield literal(found.group(0)), path.name
 
 
+def help_texts(root):
+    """What the tables of argp say of commands and options, and main.c of commands."""
+    for path in sorted((root / "app/tobiuo").glob("*.[ch]")):
+        text = path.read_text(encoding="utf-8").replace("\\\n", "\n")
+        for pattern in OPTION, COMMAND, COMMAND_DOC:
+            if pattern is not COMMAND_DOC or "struct argp " in text:
+                for found in pattern.finditer(text):
+                    yield literal(found.group(1)), path.name
+
+
 def purposes(root):
     """First sentences of the shipped scenes, which `tobiuo scenes` lists."""
     for path in sorted((root / "scenes").glob("*/scene.json")):
@@ -192,7 +205,7 @@ def main(library, root=pathlib.Path(__file__).parents[2]):
         return 77
     check_itself()
     root = pathlib.Path(root)
-    own = [*marked_texts(root / "app"), *complaints(root), *purposes(root), *unit_texts(library), *stage_texts(root)]
+    own = [*marked_texts(root / "app"), *complaints(root), *help_texts(root), *purposes(root), *unit_texts(library), *stage_texts(root)]
     known = {entry.msgid for entry in polib.pofile(str(root / "src/ja.po"), encoding="utf-8")}
     found = check_catalogue(polib, root, "src/ja.po", [*library_texts(root), *column_texts(library)])
     found += check_catalogue(polib, root, "app/tobiuo/ja.po", own, known)

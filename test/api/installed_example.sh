@@ -28,6 +28,12 @@ done
 grep "$work/usr/share/tobiuo/scenes/flying_fish/meshes/fish.obj" "$work/check.txt" > /dev/null ||
     { echo "the installed program did not find the installed fish"; exit 1; }
 
+# The man page is there in both languages.
+for page in share/man/man1 share/man/ja/man1; do
+    grep -q "^.SS tobiuo run SCENE" "$work/usr/$page/tobiuo.1" || { echo "no $page/tobiuo.1"; exit 1; }
+done
+grep -q "使い方の誤り" "$work/usr/share/man/ja/man1/tobiuo.1" || sed 's/\\://g' "$work/usr/share/man/ja/man1/tobiuo.1" |
+    grep -q "使い方の誤り" || { echo "the Japanese man page is not Japanese"; exit 1; }
 # An installed Python module finds the library.
 if python3 -c 'import cffi, numpy' 2> "$work/python.txt"; then
     PYTHONPATH=$work/usr/lib/python3/dist-packages python3 -c '
