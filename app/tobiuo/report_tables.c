@@ -1,49 +1,14 @@
 /* Tables of a report: what the CSV files of a run come to, with units and meanings from the library's lists.
    Drawback: an extreme between two outputs is not seen. */
 #include "report.h"
+#include "digest.h"
 #include "plot.h"
 #include "tobiuo/matter.h"
 #include <math.h>
 #include <string.h>
 
-/* What a column comes to. */
-typedef struct digest { double last, mean, low, high, low_time, high_time; size_t rows; } digest;
-
 /* The rows of one body; name NULL: all rows. Extremes and means are of the time from `from` on. */
 typedef struct part { const table *table; const char *name; double from; } part;
-
-static int belongs(const part *p, size_t row)
-{
-    const int column = p->name ? table_column(p->table, "name") : -1;
-    return !p->name || (column >= 0 && strcmp(p->table->cells[row*(size_t)p->table->columns + (size_t)column],
-                                              p->name) == 0);
-}
-
-/* The mean is over time: by trapezia, or for columns that are means since the row before, by that time. */
-static digest digest_column(const part *p, int column)
-{
-    digest d = { .last = NAN, .mean = NAN, .low = INFINITY, .high = -INFINITY };
-    const int time = table_column(p->table, "time");
-    const int of_outputs = strncmp(p->table->names[column], "mean_", 5) == 0;
-    double sum = 0, span = 0, before = NAN, value_before = NAN;
-    for (size_t i = 0; i < p->table->rows; i++) {
-        const double t = table_number(p->table, i, time), value = table_number(p->table, i, column);
-        if (!belongs(p, i) || isnan(t) || isnan(value)) continue;
-        d.last = value;
-        if (t < p->from) continue;
-        if (value < d.low) d.low = value, d.low_time = t;
-        if (value > d.high) d.high = value, d.high_time = t;
-        if (t > before) {
-            sum += (t - before)*(of_outputs ? value : 0.5*(value + value_before));
-            span += t - before;
-        }
-        before = t;
-        value_before = value;
-        d.rows++;
-    }
-    d.mean = span > 0 ? sum/span : d.last;
-    return d;
-}
 
 static void write_head(const report *r, const char *title)
 {
@@ -92,7 +57,7 @@ static void write_columns(const report *r, const part *p, tobi_table list, const
         const int column = table_column(p->table, name);
         if (column < 0 || strcmp(c->unit, "text") == 0) continue;
         if (strcmp(name, "time") == 0 || strcmp(name, "step") == 0) continue;
-        const digest d = digest_column(p, column);
+        const digest d = digest_column(p->table, p->name, column, -1, p->from);
         if (!is_shown(p->table, name, &d)) continue;
         if (!begun++) write_head(r, title);
         write_row(r, c, doc == said ? "" : doc, &d);

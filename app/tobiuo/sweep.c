@@ -8,11 +8,12 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { KEY_SLURM = KEY_OWN, KEY_ONLY, KEY_TABLE, KEY_PLOT, KEY_WAVES };
+enum { KEY_SLURM = KEY_OWN, KEY_ONLY, KEY_TABLE, KEY_PLOT, KEY_WAVES, KEY_FROM };
 
 static const struct argp_option options[] = {
     { "set", KEY_SET, "PATH=A,B,...", 0, "values of a key of the scene; several --set: all combinations", 0 },
     { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s", 0 },
+    { "from", KEY_FROM, "S", 0, "means and extremes of the table begin at this time, s (0)", 0 },
     { "out", 'o', "DIR", 0, "where the runs go (out/<scene>_sweep)", 0 },
     { "jobs", 'j', "N", 0, "runs at the same time; they share the cores (1)", 0 },
     { "slurm", KEY_SLURM, NULL, 0, "write DIR/sweep.slurm, an array job, and run nothing", 0 },
@@ -178,6 +179,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
         parse_positive(state, "--until", value);
         s->until = value;
         break;
+    case KEY_FROM: s->from = parse_time(state, "--from", value); break;
     case 'o':
         if (!*value) usage_error(state, tr("--out is empty"));
         s->dir = value;

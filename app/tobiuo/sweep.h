@@ -22,6 +22,7 @@ typedef struct sweep {
     sweep_axis *axes;
     int axis_count, runs;
     const char *until, *plot, *waves;        /* NULL: not given                                */
+    double from;                    /* mean, largest and least values are from this time on, s */
     int jobs, slurm, only, table;   /* only: one run by its number, -1 = all                   */
 } sweep;
 
@@ -40,8 +41,19 @@ sweep_state sweep_look(const sweep *s, int run, double *end, int *code);
 int sweep_run(const sweep *s);
 int sweep_write_slurm(const sweep *s);
 
-/* sweep_table.c: sweep.csv, sweep.txt and the plot of what there is. */
+/* sweep_table.c: sweep.csv and sweep.txt of what there is. */
 int sweep_write_table(const sweep *s);
+/* What is read of a row: a column, or the sum of two; first -1: nothing. */
+typedef struct sweep_reading { int first, second; } sweep_reading;
+sweep_reading sweep_find_reading(const table *t, const char *column);
+/* A table of all runs; empty where there is none. units: left in the names. */
+table *sweep_read_all(const sweep *s, const char *file, int units);
+void sweep_free_tables(table *list, int count);
+/* The first table with columns: all runs of a sweep have the same sensors unless they are swept. */
+const table *sweep_first_table(const table *list, int count);
+int sweep_dimension(const sweep *s);
+
+/* sweep_plot.c: sweep.svg, and sweep_means.svg where a value that is swept is a number. */
 int sweep_draw(const sweep *s);
 /* A text as a cell of a CSV table, between quotes where it must be. */
 void sweep_put_cell(FILE *out, const char *text);

@@ -161,10 +161,27 @@ if command -v gnuplot > /dev/null; then
     check "a plot of all" grep -q "spacing=0.025_method=wcsph" s/sweep.svg
     "$program" "${sweep[@]}" --plot weight > out.txt 2> err.txt
     check "units of 2-D" grep -q "weight, N per m" s/sweep.svg
+    "$program" "${sweep[@]}" --plot wall_pressure > out.txt 2> err.txt
+    check "means over the spacing" grep -q "s/sweep_means.svg shows its mean over spacing" out.txt
+    check "a curve per method" grep -q "method=wcsph" s/sweep_means.svg
+    check "of the means" grep -q "mean wall_pressure, Pa" s/sweep_means.svg
     expect 1 'no run has a column "nothing"' "${sweep[@]}" --plot nothing
 else
     "$program" "${sweep[@]}" --jobs 2 > out.txt 2> err.txt
 fi
+"$program" "${sweep[@]}" --table --from 0.01 > out.txt 2> err.txt
+check "means and extremes from a time on" $python - <<'END'
+import csv
+row = next(csv.DictReader(open("s/sweep.csv")))
+probes = list(csv.DictReader(open("s/spacing=0.02_method=dfsph/probes.csv")))
+points = [(float(p["time [s]"]), float(p["wall_pressure [Pa]"])) for p in probes if float(p["time [s]"]) >= 0.01]
+mean = sum((b[0] - a[0])*(a[1] + b[1])/2 for a, b in zip(points, points[1:]))/(points[-1][0] - points[0][0])
+high, low = max(p for _, p in points), min(p for _, p in points)
+for due, word in ((mean, "mean"), (high, "max"), (low, "min")):
+    if not abs(float(row[word + " wall_pressure [Pa]"]) - due) <= 1e-5*abs(due): raise SystemExit(word)
+END
+expect 1 "--from 9: no run has values from this time on" "${sweep[@]}" --table --from 9
+expect 2 "--from: 'x' is not a number from 0 on" "${sweep[@]}" --from x
 check "a row for each" test "$(rows s/sweep.csv)" = 5
 check "all complete" test "$(grep -c ',complete,' s/sweep.csv)" = 4
 check "the same as text" test "$(rows s/sweep.txt)" = 5
