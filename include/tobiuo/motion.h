@@ -64,8 +64,8 @@ TOBI_API tobi_status tobi_motion_sum(tobi_motion *const *parts, int count, tobi_
 
 /* A wave maker: a piston shifts along a direction, a flap turns about a hinge. One kind of waves, by its
    height above 0: regular by linear theory (Biesel 1951) or, of a piston, second order (Madsen 1971);
-   solitary, of a piston (Goring 1978); irregular, a sum of regular ones. Members of the other kinds are not
-   read. */
+   solitary, of a piston (Goring 1978); irregular, focused (Tromans et al. 1991) and those of a record_file,
+   sums of regular ones. Members of the other kinds are not read. */
 typedef enum tobi_spectrum { TOBI_JONSWAP, TOBI_PIERSON_MOSKOWITZ } tobi_spectrum;
 typedef struct tobi_wave_maker_def {
     int    flap;                  /* 1: it turns, 0: a piston                                        */
@@ -79,10 +79,17 @@ typedef struct tobi_wave_maker_def {
     int    order;                 /* 1 or 2                                                          */
     double solitary_height;       /* m                                                               */
     double significant_height;    /* m, 4 sqrt(m0): irregular waves                                  */
-    double peak_period;           /* s                                                               */
+    double focused_height;        /* m, of the crest above still water: a focused group              */
+    double focus_distance;        /* m, in front of the maker at rest                                */
+    double focus_time;            /* s                                                               */
+    double peak_period;           /* s, of irregular waves and focused groups, and so are the next   */
     int    spectrum;              /* tobi_spectrum                                                   */
     double peakedness;            /* 1, gamma of JONSWAP                                             */
     int    seed, components;      /* of the phases; how many regular waves                           */
+    const char *record_file;      /* CSV with the time (s) and the level (m) of waves to make; NULL: none */
+    const char *record_column;    /* the name of the level there, NULL: "level"                      */
+    double record_distance;       /* m, where it was measured, in front of the maker at rest         */
+    double longest_period, shortest_period;   /* s, of the record that count; 0: 2 and 1/3 of its peak's */
     int    absorb;                /* 1: a piston that goes along with waves that come back; it may make
                                      none itself                                                     */
     double absorb_period;         /* s, of the waves that it absorbs best; 0 = its own, or long ones  */
@@ -90,8 +97,9 @@ typedef struct tobi_wave_maker_def {
                                      a solitary wave                                                 */
 } tobi_wave_maker_def;
 
-/* TOBI_INVALID, with what is allowed, for waves that break (Miche; 0.78 of the depth) and numbers out of
-   range; TOBI_UNSUPPORTED for what a flap cannot. */
+/* TOBI_INVALID, with what is allowed, for waves that break (Miche; 0.78 of the depth), a focus that waves do
+   not reach in time and numbers out of range; TOBI_UNSUPPORTED for what a flap cannot. Of a record also
+   TOBI_NOT_FOUND and TOBI_IO, with file and line. */
 TOBI_API tobi_status tobi_motion_wave_maker(const tobi_wave_maker_def *def, tobi_motion **out,
                                             tobi_error *err);
 

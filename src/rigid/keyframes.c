@@ -14,16 +14,17 @@
 #define DEGREE (3.14159265358979323846/180)
 /* Bound of all numbers and rates: cubes of such numbers are finite, so the curve is. */
 #define LARGEST 1e30
-enum { MOST_ROWS = 20000000, MOST_COLUMNS = 64, FILE_LIMIT = 1 << 30 /* bytes */ };
+enum { MOST_ROWS = 20000000, MOST_COLUMNS = 1024, FILE_LIMIT = 1 << 30 /* bytes */ };
 
 typedef enum column {
     TIME, X, Y, Z, QW, QX, QY, QZ, AX, AY, AZ, ANGLE, ROLL, PITCH, YAW, SPEED, RATE, TORQUE,
-    POSITION, FORCE, COLUMNS
+    POSITION, FORCE, LEVEL, OTHER, COLUMNS       /* OTHER: of a record, not read */
 } column;
 
 static const char *const column_names[COLUMNS] = {"time", "x",  "y",  "z",     "qw",   "qx",    "qy", "qz",
                                                   "ax",   "ay", "az", "angle", "roll", "pitch", "yaw",
-                                                  "speed", "flow_rate", "torque", "position", "force"};
+                                                  "speed", "flow_rate", "torque", "position", "force",
+                                                  "level", "other"};
 
 /* The units that a column's name may bring along, as in "x [mm]", and how many of the first one is; the first
    holds without a unit. */
@@ -50,6 +51,7 @@ struct tobi_keyframes {
 
 typedef struct reader {
     const char *what, *path;            /* "keyframes", "gravity", "flow" or "motor"   */
+    const char *level;                  /* the name of its column, of recorded levels; else NULL */
     int slides;                         /* 1: the motor of a guide                     */
     int64_t line;
     const char *separators;             /* those that the header may have, then the one that it has */
@@ -134,12 +136,19 @@ static const char *motor_columns(const reader *r)
                      : tr("angle (degrees), speed (degrees/s) and torque (N m)");
 }
 
+static tobi_status check_level_column(const reader *r, tobi_error *err)
+{
+    if (r->given[LEVEL]) return TOBI_OK;
+    return fail_here(r, err, tr("there is no column of levels named "), tobi_excerpt(r->level).text);
+}
+
 static tobi_status check_columns(const reader *r, tobi_error *err)
 {
     const int *g = r->given;
     int quaternion = g[QW] + g[QX] + g[QY] + g[QZ], axis = g[AX] + g[AY] + g[AZ] + g[ANGLE];
     int angles = g[ROLL] + g[PITCH] + g[YAW];
     if (!g[TIME]) return fail_here(r, err, tr("there is no column \"time\""), "");
+    if (r->level) return check_level_column(r, err);
     if (is_flow(r)) return check_flow_columns(r, err);
     if (is_motor(r) && g[ANGLE] + g[POSITION] + g[SPEED] + g[TORQUE] + g[FORCE] == 1) return TOBI_OK;
     if (is_motor(r))
@@ -164,7 +173,7 @@ static const unit *column_units(const reader *r, column c)
     if (c >= SPEED && c < POSITION)
         return c == TORQUE ? torque_units : c == RATE ? rate_units : is_motor(r) && !r->slides ? turn_units
                                                                                                : speed_units;
-    if (c <= Z || c == POSITION) return is_gravity(r) ? pull_units : length_units;
+    if (c <= Z || c == POSITION || c == LEVEL) return is_gravity(r) ? pull_units : length_units;
     return c < ANGLE ? plain_units : angle_units;
 }
 
@@ -200,6 +209,28 @@ static tobi_status read_unit(const reader *r, char *text, char closing, column c
                      all, units[0].name);
 }
 
+/* The column that the name of a field means. */
+static column find_column(const reader *r, const char *field)
+{
+    if (strcasecmp(field, "t") == 0) return TIME;
+    if (r->level)
+        return strcasecmp(field, r->level) == 0 ? LEVEL : strcasecmp(field, "time") == 0 ? TIME : OTHER;
+    for (int c = 0; c < LEVEL; c++)
+        if (is_allowed(r, c) && strcasecmp(field, column_names[c]) == 0) return c;
+    return COLUMNS;
+}
+
+static tobi_status fail_column(const reader *r, const char *field, tobi_error *err)
+{
+    return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: there is no column \"%s\"; allowed are "
+                     "time (s)%s%s", r->what, r->path, (long long)r->line, tobi_excerpt(field).text,
+                     is_flow(r) ? tr(", speed (m/s) and flow_rate (m3/s)")
+                     : is_motor(r) ? tr(" and one of ")
+                     : is_gravity(r) ? ", x, y, z (m/s2)"
+                     : tr(", x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, pitch, yaw "
+                       "(degrees)"), is_motor(r) ? motor_columns(r) : "");
+}
+
 static tobi_status read_header(reader *r, char *line, tobi_error *err)
 {
     char *rest = line;
@@ -209,21 +240,15 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
         char closing = 0, *text = split_unit(field, &closing);
         double scale = 1;
         if (!*field) return fail_here(r, err, tr("an empty column name (a comma too many?)"), "");
-        int found = strcasecmp(field, "t") == 0 ? TIME : COLUMNS;
-        for (int c = 0; c < COLUMNS && found == COLUMNS; c++)
-            if (is_allowed(r, c) && strcasecmp(field, column_names[c]) == 0) found = c;
-        if (found == COLUMNS)
-            return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: there is no column \"%s\"; allowed are "
-                             "time (s)%s%s", r->what, r->path, (long long)r->line, tobi_excerpt(field).text,
-                             is_flow(r) ? tr(", speed (m/s) and flow_rate (m3/s)")
-                             : is_motor(r) ? tr(" and one of ")
-                             : is_gravity(r) ? ", x, y, z (m/s2)"
-                             : tr(", x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, pitch, yaw "
-                               "(degrees)"), is_motor(r) ? motor_columns(r) : "");
-        if (text) TOBI_TRY(read_unit(r, text, closing, found, &scale, err));
-        if (r->given[found]++) return fail_here(r, err, tr("a column comes twice: "), column_names[found]);
+        const column found = find_column(r, field);
+        if (found == COLUMNS) return fail_column(r, field, err);
+        if (r->fields == MOST_COLUMNS)
+            return fail_here(r, err, tr("more columns than are allowed, 1024"), "");
+        if (text && found != OTHER) TOBI_TRY(read_unit(r, text, closing, found, &scale, err));
+        if (r->given[found]++ && found != OTHER)
+            return fail_here(r, err, tr("a column comes twice: "), column_names[found]);
         r->scale[r->fields] = scale;
-        r->meaning[r->fields++] = found;      /* no more than COLUMNS, since none comes twice */
+        r->meaning[r->fields++] = found;
     }
     return check_columns(r, err);
 }
@@ -235,6 +260,7 @@ static tobi_status read_numbers(const reader *r, char *line, double value[COLUMN
     for (; (field = next_field(r, &rest)) != NULL; n++) {
         char *end;
         if (n == r->fields) break;
+        if (r->meaning[n] == OTHER) continue;
         double x = strtod(field, &end);
         if (end == field || *end || !isfinite(x))
             return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: \"%s\" in column %s is no finite "
@@ -310,6 +336,7 @@ static tobi_status add_row(tobi_keyframes *f, int64_t *room, const reader *r, ch
     TOBI_TRY(read_numbers(r, line, value, err));
     row.time = value[TIME];
     memcpy(row.shift, value + X, sizeof row.shift);
+    if (r->level) row.shift[0] = value[LEVEL];
     if (is_flow(r)) row.shift[0] = value[SPEED] + value[RATE];
     if (is_motor(r))
         row.shift[0] = value[ANGLE] + value[POSITION] + value[SPEED] + value[TORQUE] + value[FORCE];
@@ -492,6 +519,13 @@ tobi_status tobi_keyframes_load_motor(const char *path, int slides, int *column,
     TOBI_TRY(load(&r, out, err));
     *column = r.given[SPEED] ? 0 : r.given[ANGLE] || r.given[POSITION] ? 1 : 2;
     return TOBI_OK;
+}
+
+tobi_status tobi_keyframes_load_levels(const char *path, const char *name, tobi_keyframes **out,
+                                       tobi_error *err)
+{
+    reader r = {.what = tr("record"), .path = path, .level = name && *name ? name : "level"};
+    return load(&r, out, err);
 }
 
 int64_t tobi_keyframes_count(const tobi_keyframes *f) { return f->count; }

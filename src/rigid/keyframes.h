@@ -38,6 +38,10 @@ tobi_status tobi_keyframes_load_flow(const char *path, int *is_rate, tobi_keyfra
    1, 2, which it is. */
 tobi_status tobi_keyframes_load_motor(const char *path, int slides, int *column, tobi_keyframes **out,
                                       tobi_error *err);
+/* The same for recorded levels: columns time (s) and `name` (m), NULL or "" is "level", whose value is the
+   "shift" along x; other columns may stand beside them. */
+tobi_status tobi_keyframes_load_levels(const char *path, const char *name, tobi_keyframes **out,
+                                       tobi_error *err);
 /* Rows, and the time (s) and shift of one. */
 int64_t tobi_keyframes_count(const tobi_keyframes *frames);
 double tobi_keyframes_row(const tobi_keyframes *frames, int64_t row, double shift[3]);

@@ -215,7 +215,8 @@ tobi_status tobi_motion_wave_maker(const tobi_wave_maker_def *def, tobi_motion *
     const double numbers[] = { def->depth, def->gravity, def->height, def->period, def->phase,
                                def->solitary_height, def->significant_height, def->peak_period,
                                def->peakedness, def->hinge_height, def->start, def->ramp,
-                               def->absorb_period };
+                               def->absorb_period, def->focused_height, def->focus_distance, def->focus_time,
+                               def->record_distance, def->longest_period, def->shortest_period };
     TOBI_TRY(check_finite(tr("every number of a wave maker"), numbers, sizeof numbers/sizeof *numbers, err));
     TOBI_TRY(check_finite("hinge", def->hinge, 3, err));
     TOBI_TRY(set_direction("direction", def->direction, along, err));

@@ -1,9 +1,9 @@
 /* Wave makers: regular waves by Biesel's transfer function and Madsen's second order, solitary waves by
-   Goring, irregular ones as sums of regular ones. Drawback: sums leave out what their components do to one
-   another, so that long waves travel with their groups too free. */
+   Goring, sums of regular ones by rigid/wave_sums.c. Drawback: sums leave out what their components do to
+   one another, so that long waves travel with their groups too free. */
 #include "rigid/waves.h"
+#include "rigid/wave_sums.h"
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 
 #define PI 3.14159265358979323846
@@ -13,19 +13,16 @@ static const double SOLITARY_BREAKS = 0.78, MICHE = 0.142;
 static const double MADSEN_LIMIT = 8*PI*PI/3;
 /* Goring: the paddle moves while its argument is within so much, plus H/h, of the crest. */
 static const double GORING_REACH = 3.8;
-/* Of the peak frequency: the band that irregular waves have. */
-static const double BAND_LOW = 0.5, BAND_HIGH = 3;
 enum { EVANESCENT = 30 };
 /* Of absorption. Depths in front of the piston: local waves have faded there to a half. Periods in which
    the piston comes back, and over which the mean level is taken; for long waves both by depths. */
 static const double GAUGE = 0.25, BACK = 5, MEAN = 3, BACK_DEPTHS = 60;
 
-typedef struct wave { double omega, k, phase, stroke, level; } wave;
-
 struct tobi_waves {
     tobi_wave_maker_def def;
-    wave *wave;                 /* owned: stroke: m, half of it; level: m, their amplitude                 */
+    tobi_wave *wave;            /* owned                                                                  */
     int count;
+    double period;              /* s, theirs or that of the peak; 0: a solitary wave, or none              */
     double second;              /* m, of the second order                                                 */
     double bound;               /* m, amplitude of the second harmonic of regular waves (Stokes)           */
     double kappa, speed, span;  /* solitary: 1/m, m/s, s                                                   */
@@ -108,9 +105,45 @@ static tobi_status check_second_order(const tobi_wave_maker_def *d, tobi_error *
                      d->height, length, d->depth, most);
 }
 
+/* s: how long waves of a period need from the maker to the focus. */
+static double travel(const tobi_wave_maker_def *d, double period)
+{
+    const double k = tobi_waves_number(d->gravity, d->depth, period), kh = k*d->depth;
+    const double speed = PI/(period*k)*(1 + 2*kh/sinh(2*kh));
+    return d->focus_distance/speed;
+}
+
+static tobi_status check_focus(const tobi_wave_maker_def *d, tobi_error *err)
+{
+    if (!(d->peak_period > 0) || !(d->focus_distance > 0))
+        return tobi_fail(err, TOBI_INVALID, "a focused group needs a peak_period and a distance, both "
+                         "greater than 0; given are %g s and %g m", d->peak_period, d->focus_distance);
+    const double most = 0.5*breaking_height(d, tobi_waves_number(d->gravity, d->depth, d->peak_period));
+    if (d->focused_height > most)
+        return tobi_fail(err, TOBI_INVALID, "a focused crest %g m high with a peak period of %g s breaks on "
+                         "water %g m deep: allowed are up to %.4g m, 0.071 L tanh kh (Miche)",
+                         d->focused_height, d->peak_period, d->depth, most);
+    const double least = d->start + travel(d, d->peak_period);
+    if (d->focus_time >= least) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "waves of the peak period are at the focus, %g m away, at %.4g s at "
+                     "the earliest; time is %g s", d->focus_distance, least, d->focus_time);
+}
+
+static tobi_status check_record(const tobi_wave_maker_def *d, tobi_error *err)
+{
+    if (!(d->record_distance >= 0) || !(d->longest_period >= 0) || !(d->shortest_period >= 0))
+        return tobi_fail(err, TOBI_INVALID, "distance, longest_period and shortest_period of a record "
+                         "must not be below 0; given are %g m, %g s and %g s", d->record_distance,
+                         d->longest_period, d->shortest_period);
+    if (!(d->longest_period > 0) || d->longest_period > d->shortest_period) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "longest_period, %g s, is not greater than shortest_period, %g s",
+                     d->longest_period, d->shortest_period);
+}
+
 static tobi_status check(const tobi_wave_maker_def *d, tobi_error *err)
 {
-    const int kinds = (d->height > 0) + (d->solitary_height > 0) + (d->significant_height > 0);
+    const int kinds = (d->height > 0) + (d->solitary_height > 0) + (d->significant_height > 0) +
+                      (d->focused_height > 0) + (d->record_file != NULL);
     if (!(d->depth > 0) || !(d->gravity > 0))
         return tobi_fail(err, TOBI_INVALID, "a wave maker needs the depth of the water and gravity, both "
                          "greater than 0; given are %g m and %g m/s2", d->depth, d->gravity);
@@ -121,11 +154,12 @@ static tobi_status check(const tobi_wave_maker_def *d, tobi_error *err)
                          "false");
     if (d->absorb && kinds == 0) return TOBI_OK;
     if (kinds != 1)
-        return tobi_fail(err, TOBI_INVALID, "a wave maker makes one kind of waves: regular, solitary or "
-                         "irregular, by its height; given are %d", kinds);
-    if (d->significant_height > 0 && (d->components < 1 || !(d->peakedness >= 1)))
-        return tobi_fail(err, TOBI_INVALID, "irregular waves have %d components and the peakedness %g; "
-                         "allowed are 1 and more of both", d->components, d->peakedness);
+        return tobi_fail(err, TOBI_INVALID, "a wave maker makes one kind of waves: regular, solitary, "
+                         "irregular or focused ones, by their height, or those of a record; given are %d",
+                         kinds);
+    if ((d->significant_height > 0 || d->focused_height > 0) && (d->components < 1 || !(d->peakedness >= 1)))
+        return tobi_fail(err, TOBI_INVALID, "the waves have %d components and the peakedness %g; allowed are "
+                         "1 and more of both", d->components, d->peakedness);
     if (d->flap && !(d->hinge_height < d->depth))
         return tobi_fail(err, TOBI_INVALID, "the hinge is %g m above the bottom, not below the still water, "
                          "%g m", d->hinge_height, d->depth);
@@ -139,20 +173,12 @@ static tobi_status check(const tobi_wave_maker_def *d, tobi_error *err)
         TOBI_TRY(check_height(d, "regular", d->height, d->period, err));
         return check_second_order(d, err);
     }
-    return d->solitary_height > 0 ? TOBI_OK
-         : check_height(d, "irregular", d->significant_height, d->peak_period, err);
+    if (d->significant_height > 0)
+        return check_height(d, "irregular", d->significant_height, d->peak_period, err);
+    return d->focused_height > 0 ? check_focus(d, err) : d->record_file ? check_record(d, err) : TOBI_OK;
 }
 
 /* --- making ------------------------------------------------------------------------------------ */
-
-/* A component of the height 2 a. */
-static wave make_wave(const tobi_wave_maker_def *d, double amplitude, double period, double phase)
-{
-    const double k = tobi_waves_number(d->gravity, d->depth, period), omega = 2*PI/period;
-    wave w = { .omega = omega, .k = k, .phase = phase, .level = amplitude };
-    w.stroke = amplitude/tobi_waves_per_stroke(k, d->depth, d->flap ? d->hinge_height : INFINITY);
-    return w;
-}
 
 /* Of the piston at 2 omega, which takes away the free second harmonic (Madsen 1971, eq. 30). */
 static double second_order(const tobi_wave_maker_def *d)
@@ -169,43 +195,6 @@ static double bound_harmonic(const tobi_wave_maker_def *d)
     return d->height*d->height*k/16*cosh(kh)*(2 + cosh(2*kh))/(s*s*s);
 }
 
-static uint64_t shuffle(uint64_t *state)        /* splitmix64, Steele et al. 2014 */
-{
-    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30))*0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27))*0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
-
-static double random_share(uint64_t *state) { return (double)(shuffle(state) >> 11)*0x1p-53; }
-
-/* Of JONSWAP, Hasselmann et al. 1973, but for its scale; peakedness 1: Pierson-Moskowitz. */
-static double density(double f, double peak, double peakedness)
-{
-    const double r = f/peak, width = r <= 1 ? 0.07 : 0.09, x = (r - 1)/width;
-    return pow(r, -5)*exp(-1.25*pow(r, -4))*pow(peakedness, exp(-0.5*x*x));
-}
-
-/* One component anywhere in each of equal parts of the band: the sum does not repeat itself. The scale is
-   that of the significant height, 4 sqrt(m0). */
-static void make_irregular(tobi_waves *w)
-{
-    const tobi_wave_maker_def *d = &w->def;
-    const double peak = 1/d->peak_period, width = (BAND_HIGH - BAND_LOW)*peak/w->count;
-    const double peakedness = d->spectrum == TOBI_JONSWAP ? d->peakedness : 1;
-    uint64_t state = (uint64_t)d->seed;
-    double m0 = 0;
-    for (int n = 0; n < w->count; n++)
-        m0 += width*density(BAND_LOW*peak + (n + 0.5)*width, peak, peakedness);
-    const double scale = d->significant_height*d->significant_height/(16*m0);
-    for (int n = 0; n < w->count; n++) {
-        const double middle = BAND_LOW*peak + (n + 0.5)*width;
-        const double f = middle + (random_share(&state) - 0.5)*width;
-        const double amplitude = sqrt(2*scale*width*density(middle, peak, peakedness));
-        w->wave[n] = make_wave(d, amplitude, 1/f, 2*PI*random_share(&state));
-    }
-}
-
 static void make_solitary(tobi_waves *w)
 {
     const double H = w->def.solitary_height, h = w->def.depth;
@@ -219,17 +208,14 @@ tobi_status tobi_waves_create(const tobi_wave_maker_def *def, tobi_waves **out, 
     *out = NULL;
     TOBI_TRY(check(def, err));
     tobi_waves *w = calloc(1, sizeof *w);
-    const int count = def->significant_height > 0 ? def->components : def->height > 0;
-    if (w) w->wave = calloc((size_t)count + 1, sizeof *w->wave);
-    if (!w || !w->wave) {
-        free(w);
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for waves");
-    }
+    if (!w) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for waves");
     w->def = *def;
-    w->count = count;
+    const tobi_status status = tobi_wave_sum(def, &w->wave, &w->count, &w->period, err);
+    if (status != TOBI_OK) {
+        free(w);
+        return status;
+    }
     if (def->solitary_height > 0) make_solitary(w);
-    else if (def->significant_height > 0) make_irregular(w);
-    else if (count) w->wave[0] = make_wave(def, 0.5*def->height, def->period, def->phase*(PI/180));
     if (def->height > 0) w->bound = bound_harmonic(def);
     if (def->height > 0 && def->order == 2) w->second = second_order(def);
     *out = w;
@@ -240,9 +226,14 @@ double tobi_waves_depth(const tobi_waves *w) { return w->def.depth; }
 
 double tobi_waves_sudden(const tobi_waves *w)
 {
+    return w->def.ramp < 0.5*w->period ? w->period : 0;
+}
+
+double tobi_waves_late(const tobi_waves *w)
+{
     const tobi_wave_maker_def *d = &w->def;
-    const double period = d->height > 0 ? d->period : d->significant_height > 0 ? d->peak_period : 0;
-    return d->ramp < 0.5*period ? period : 0;
+    const double least = d->focused_height > 0 ? d->start + travel(d, 0.5*d->peak_period) : 0;
+    return d->focus_time < least ? least : 0;
 }
 
 void tobi_waves_free(tobi_waves *w)
@@ -296,7 +287,7 @@ double tobi_waves_level(const tobi_waves *w, double t, double distance)
     }
     double sum = 0;
     for (int n = 0; n < w->count; n++) {
-        const wave *one = &w->wave[n];
+        const tobi_wave *one = &w->wave[n];
         const double angle = one->omega*t + one->phase, local =
             d->flap ? 0 : one->stroke*local_level(d->gravity, d->depth, one->omega, distance);
         sum += one->level*cos(angle - one->k*distance) + local*sin(angle);
@@ -310,8 +301,7 @@ double tobi_waves_level(const tobi_waves *w, double t, double distance)
 int tobi_waves_absorption(const tobi_waves *w, tobi_absorption *out)
 {
     const tobi_wave_maker_def *d = &w->def;
-    const double own = d->height > 0 ? d->period : d->significant_height > 0 ? d->peak_period : 0;
-    const double period = d->absorb_period > 0 ? d->absorb_period : own, h = d->depth;
+    const double period = d->absorb_period > 0 ? d->absorb_period : w->period, h = d->depth;
     *out = (tobi_absorption){ .distance = GAUGE*h };
     if (!d->absorb) return 0;
     if (!(period > 0)) {

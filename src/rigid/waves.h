@@ -33,6 +33,8 @@ const tobi_waves *tobi_motion_absorber(const tobi_motion *motion, double directi
 /* s: the period, for irregular waves that of the peak, if the strokes do not rise over half of it or more; 0:
    they do, or it is a solitary wave, which rises by itself. */
 double tobi_waves_sudden(const tobi_waves *waves);
+/* s: when waves of half the peak period are at the focus of a group, if they are late for it; else 0. */
+double tobi_waves_late(const tobi_waves *waves);
 /* The waves of a piston or flap, or of one among the parts of the motion; NULL. */
 const tobi_waves *tobi_motion_waves(const tobi_motion *motion);
 /* m: the depth that a piston or flap, or one among the parts of the motion, is made for; 0: there is none. */

@@ -106,7 +106,7 @@ static const tobi_param keyframes_rows[] = {
       .text = "that of the scene", .doc = "Size of gravity, for the theory." }, \
     { .key = "regular.height", REAL, WAVE height), HEIGHTS, \
       .doc = "Height of regular waves from trough to crest, by Biesel's transfer function. One of the " \
-             "three kinds of waves is given." }, \
+             "kinds of waves is given." }, \
     { .key = "regular.period", REAL, WAVE period), DURATION, .unit = "s", .text = "none", \
       .doc = "Their period." }, \
     { .key = "regular.phase", REAL, WAVE phase), RANGE(-1e9, 1e9), .unit = "degrees", \
@@ -123,6 +123,34 @@ static const tobi_param keyframes_rows[] = {
       .doc = "Another number, other phases of the same spectrum." }, \
     { .key = "irregular.components", INT, WAVE components), .def = { 100 }, RANGE(1, 10000), .unit = "1", \
       .doc = "How many regular waves they are the sum of, between 0.5 and 3 peak frequencies." }, \
+    { .key = "focused.height", REAL, WAVE focused_height), HEIGHTS, \
+      .doc = "Height above still water of the highest crest of a focused group." }, \
+    { .key = "focused.distance", REAL, WAVE focus_distance), RANGE(0, 1e7), .unit = "m", .text = "none", \
+      .doc = "How far in front of the maker its crests meet." }, \
+    { .key = "focused.time", REAL, WAVE focus_time), RANGE(-1e9, 1e9), .unit = "s", \
+      .doc = "When they meet. Waves must have come so far by then." }, \
+    { .key = "focused.peak_period", REAL, WAVE peak_period), DURATION, .unit = "s", .text = "none", \
+      .doc = "Period of the peak of its spectrum." }, \
+    { .key = "focused.spectrum", CHOICE("jonswap|pierson-moskowitz", 2), WAVE spectrum), \
+      .doc = "The shape of its spectrum. Amplitudes go with the density (NewWave)." }, \
+    { .key = "focused.peakedness", REAL, WAVE peakedness), .def = { 3.3 }, RANGE(1, 10), .unit = "1", \
+      .doc = "Gamma of jonswap." }, \
+    { .key = "focused.components", INT, WAVE components), .def = { 100 }, RANGE(1, 10000), .unit = "1", \
+      .doc = "How many regular waves it is the sum of, between 0.5 and 3 peak frequencies. Their sum comes " \
+             "again after their number over 2.5, in peak periods." }, \
+    { .key = "recorded.file", TEXT, WAVE record_file), .unit = "path", \
+      .doc = "A CSV file with the columns time (s) and level (m): waves whose level was measured. Its " \
+             "times are those of the run, and its mean is still water. Other columns are not read." }, \
+    { .key = "recorded.column", TEXT, WAVE record_column), .unit = "name", .text = "level", \
+      .doc = "The name of the column with the level, without its unit, as G1_level of a probes.csv." }, \
+    { .key = "recorded.distance", REAL, WAVE record_distance), RANGE(0, 1e7), .unit = "m", \
+      .doc = "How far in front of the maker it was measured." }, \
+    { .key = "recorded.longest_period", REAL, WAVE longest_period), DURATION, .unit = "s", \
+      .text = "automatic", \
+      .doc = "Longer waves of the record are left out. Automatic is twice the period of its peak." }, \
+    { .key = "recorded.shortest_period", REAL, WAVE shortest_period), DURATION, .unit = "s", \
+      .text = "automatic", \
+      .doc = "Shorter waves of the record are left out. Automatic is a third of the period of its peak." }, \
     { .key = "start", REAL, WAVE start), RANGE(-1e9, 1e9), .unit = "s", .doc = "Until then it rests." }, \
     { .key = "ramp", REAL, WAVE ramp), RANGE(0, 1e9), .unit = "s", \
       .doc = "Displacements rise like (1 - cos(pi s/ramp))/2 in so many seconds after start; not those of " \
@@ -166,9 +194,11 @@ static const tobi_param_table tables[] = {
     { "roll", "motion.roll: to and fro about an axis along x.", sizeof(tobi_degree_def), turn_rows },
     { "pitch", "motion.pitch: to and fro about an axis along y.", sizeof(tobi_degree_def), turn_rows },
     { "yaw", "motion.yaw: to and fro about an axis along z.", sizeof(tobi_degree_def), turn_rows },
-    { "piston", "motion.piston: a wave maker that shifts; one of regular, solitary and irregular waves.",
+    { "piston", "motion.piston: a wave maker that shifts; regular, solitary, irregular, focused or "
+      "recorded waves.",
       sizeof(tobi_wave_maker_def), piston_rows },
-    { "flap", "motion.flap: a wave maker that turns about a hinge; regular or irregular waves.",
+    { "flap", "motion.flap: a wave maker that turns about a hinge; regular, irregular, focused or "
+      "recorded waves.",
       sizeof(tobi_wave_maker_def), flap_rows }
 };
 enum { SCRIPT, TRANSLATION, ROTATION, OSCILLATION, KEYFRAMES, SURGE, ROLL = SURGE + 3,

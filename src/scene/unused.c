@@ -16,11 +16,13 @@ typedef enum reader {
     FLIP, XPIC,      /* ways to the grid and back                 */
     GMRES,           /* the solver of isph                        */
     SWEEPS,          /* several of eisph: one is the same by both */
-    REGULAR, IRREGULAR, PEAK, RAMP, OWN      /* waves of a maker; OWN: any */
+    REGULAR, IRREGULAR, PEAK, FOCUSED, FOCUSED_PEAK, RECORDED, RAMP, OWN      /* waves of a maker; OWN: any */
 } reader;
 
 #define NOT_REGULAR TR("is for regular waves, which have a regular.height")
 #define NOT_IRREGULAR TR("is for irregular waves, which have an irregular.height")
+#define NOT_FOCUSED TR("is for a focused group, which has a focused.height")
+#define NOT_RECORDED TR("is for recorded waves, which have a recorded.file")
 #define UNMOVED TR("is for free and controlled bodies, this one is prescribed")
 
 static const struct {
@@ -66,7 +68,16 @@ static const struct {
     { maker, "irregular.seed", IRREGULAR, NOT_IRREGULAR }, \
     { maker, "irregular.components", IRREGULAR, NOT_IRREGULAR }, \
     { maker, "irregular.peakedness", PEAK, TR("is for irregular waves of the spectrum jonswap") }, \
-    { maker, "ramp", RAMP, TR("is for regular and irregular waves") }
+    { maker, "focused.distance", FOCUSED, NOT_FOCUSED }, { maker, "focused.time", FOCUSED, NOT_FOCUSED }, \
+    { maker, "focused.peak_period", FOCUSED, NOT_FOCUSED }, \
+    { maker, "focused.spectrum", FOCUSED, NOT_FOCUSED }, \
+    { maker, "focused.components", FOCUSED, NOT_FOCUSED }, \
+    { maker, "focused.peakedness", FOCUSED_PEAK, TR("is for a focused group of the spectrum jonswap") }, \
+    { maker, "recorded.column", RECORDED, NOT_RECORDED }, \
+    { maker, "recorded.distance", RECORDED, NOT_RECORDED }, \
+    { maker, "recorded.longest_period", RECORDED, NOT_RECORDED }, \
+    { maker, "recorded.shortest_period", RECORDED, NOT_RECORDED }, \
+    { maker, "ramp", RAMP, TR("is for waves that go on; a solitary wave rises by itself") }
     WAVES("piston"), WAVES("flap"),
 #undef WAVES
     { "piston", "regular.order", REGULAR, NOT_REGULAR },
@@ -83,12 +94,17 @@ static const void *find_def(const tobi_scene *scene, const char *method)
 static int makes(const tobi_wave_maker_def *waves, reader who)
 {
     const int regular = waves->height > 0, irregular = waves->significant_height > 0;
+    const int focused = waves->focused_height > 0, recorded = waves->record_file != NULL;
+    const int jonswap = waves->spectrum == TOBI_JONSWAP, any = regular || irregular || focused || recorded;
     switch (who) {
     case REGULAR: return regular;
     case IRREGULAR: return irregular;
-    case PEAK: return irregular && waves->spectrum == TOBI_JONSWAP;
-    case RAMP: return regular || irregular;
-    default: return regular || irregular || waves->solitary_height > 0;
+    case PEAK: return irregular && jonswap;
+    case FOCUSED: return focused;
+    case FOCUSED_PEAK: return focused && jonswap;
+    case RECORDED: return recorded;
+    case RAMP: return any;
+    default: return any || waves->solitary_height > 0;
     }
 }
 

@@ -98,6 +98,17 @@ static tobi_status note_depth(tobi_world *w, const tobi_body *b, tobi_error *err
     return tobi_world_add_notes(w, "body", b->name, text, err);
 }
 
+/* A focus without its short waves is lower and broader than asked for. */
+static tobi_status note_focus(tobi_world *w, const tobi_body *b, tobi_error *err)
+{
+    const double least = tobi_waves_late(tobi_motion_waves(b->motion_user));
+    char text[TOBI_NOTE];
+    if (!(least > 0)) return TOBI_OK;
+    snprintf(text, sizeof text, tr("the focus of its waves comes too early: waves of half the peak period "
+             "are there at %.4g s\n"), least);
+    return tobi_world_add_notes(w, "body", b->name, text, err);
+}
+
 /* The first wave of a sudden start is not of the kind that is asked for, and goes ahead of the others. */
 static tobi_status note_start(tobi_world *w, const tobi_body *b, tobi_error *err)
 {
@@ -118,6 +129,7 @@ tobi_status tobi_world_note_makers(tobi_world *w, tobi_error *err)
         TOBI_TRY(note_method(w, &w->sim.bodies[k], err));
         TOBI_TRY(note_depth(w, &w->sim.bodies[k], err));
         TOBI_TRY(note_start(w, &w->sim.bodies[k], err));
+        TOBI_TRY(note_focus(w, &w->sim.bodies[k], err));
     }
     return TOBI_OK;
 }

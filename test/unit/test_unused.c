@@ -132,7 +132,7 @@ static const row rows[] = {
           "\"hinge\": [1, 1, 0], \"regular\": { \"height\": 0.1, \"period\": 2, \"phase\": 9 }",
           "is for regular waves, which have a regular.height"),
     WAVES("ramp", "piston", "ramp", CREST ", \"ramp\": 1", SWELL ", \"ramp\": 1",
-          "is for regular and irregular waves"),
+          "is for waves that go on; a solitary wave rises by itself"),
     WAVES("start", "piston", "start", "\"absorb\": true, \"start\": 1", CREST ", \"start\": 1",
           "is for waves of its own"),
 };

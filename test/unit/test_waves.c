@@ -3,7 +3,10 @@
 #include "rigid/waves.h"
 #include "tobiuo/tobiuo.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 static const double PI = 3.14159265358979323846;
 
@@ -115,6 +118,91 @@ static void irregular_waves_have_their_height(void **state)
     }
 }
 
+/* At the focus the crest is as high as asked for: all cosines are 1 there. Beside it, it is lower, and where
+   waves start the group is spread out. */
+static void crests_of_a_group_meet(void **state)
+{
+    tobi_wave_maker_def d = make_def();
+    tobi_waves *w;
+    (void)state;
+    d.flap = 1;
+    d.focused_height = 0.08;
+    d.peak_period = 1.6;
+    d.focus_distance = 6;
+    d.focus_time = 12;
+    d.ramp = 2;
+    for (int spectrum = TOBI_JONSWAP; spectrum <= TOBI_PIERSON_MOSKOWITZ; spectrum++) {
+        double most = 0, least = 0;
+        d.spectrum = spectrum;
+        OK(tobi_waves_create(&d, &w, &err));
+        close_to(tobi_waves_level(w, 12, 6), 0.08, 1e-12);
+        for (int n = 0; n < 400; n++) {
+            const double level = tobi_waves_level(w, 8 + 0.02*n, 5.5);
+            most = fmax(most, level);
+            least = fmin(least, tobi_waves_level(w, 8 + 0.02*n, 6));
+        }
+        assert_true(most < 0.079 && most > 0.05);
+        assert_true(least < -0.03 && least > -0.07);       /* the troughs beside it are flatter */
+        assert_true(fabs(tobi_waves_displacement(w, 0.5)) < 0.01 && tobi_waves_late(w) == 0);
+        tobi_waves_free(w);
+    }
+    d.focus_time = 5;
+    OK(tobi_waves_create(&d, &w, &err));
+    const double k = tobi_waves_number(9.81, 1, 0.8), speed = PI/(0.8*k)*(1 + 2*k/sinh(2*k));
+    close_to(tobi_waves_late(w), 6/speed, 1e-9);
+    tobi_waves_free(w);
+}
+
+static const char *write_record(const char *text)
+{
+    static char path[64];
+    snprintf(path, sizeof path, "record_%d.csv", (int)getpid());
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fputs(text, f);
+    fclose(f);
+    return path;
+}
+
+/* What another maker makes at a distance, written as a gauge has it: uneven in time, about a level of its
+   own, beside another column. It comes again, there and further on. */
+static void recorded_levels_come_again(void **state)
+{
+    tobi_wave_maker_def d = make_def(), again = make_def();
+    tobi_waves *w, *v;
+    char path[64];
+    (void)state;
+    d.flap = again.flap = 1;
+    d.focused_height = 0.05;
+    d.peak_period = 1.6;
+    d.focus_distance = 6;
+    d.focus_time = 20;
+    OK(tobi_waves_create(&d, &w, &err));
+    snprintf(path, sizeof path, "%s", write_record(""));
+    FILE *f = fopen(path, "w");
+    fprintf(f, "note;time [ms];G1_level [cm]\n");
+    for (double t = 0; t <= 40; t += 0.02 + 0.01*sin(9*t))
+        fprintf(f, "word;%.9g;%.9g\n", 1e3*t, 1e2*(1 + tobi_waves_level(w, t, 3)));
+    fclose(f);
+    again.record_file = path;
+    again.record_column = "g1_level";
+    again.record_distance = 3;
+    OK(tobi_waves_create(&again, &v, &err));
+    for (double t = 12; t < 28; t += 0.1) {
+        close_to(tobi_waves_level(v, t, 3), tobi_waves_level(w, t, 3), 0.0005);
+        close_to(tobi_waves_level(v, t, 6), tobi_waves_level(w, t, 6), 0.0005);
+        close_to(tobi_waves_displacement(v, t), tobi_waves_displacement(w, t), 0.0005);
+    }
+    close_to(tobi_waves_sudden(v), 1.6, 0.05);
+    tobi_waves_free(v);
+    again.longest_period = 1.2;                            /* without those of the peak */
+    OK(tobi_waves_create(&again, &v, &err));
+    assert_true(fabs(tobi_waves_level(v, 20, 6)) < 0.02);
+    tobi_waves_free(v);
+    tobi_waves_free(w);
+    remove(path);
+}
+
 /* The top of a flap goes where the waves go, by the stroke at the still water. */
 static void flaps_turn_about_their_hinge(void **state)
 {
@@ -148,7 +236,7 @@ static void what_cannot_be_is_refused(void **state)
 {
     tobi_wave_maker_def d = make_def();
     (void)state;
-    REFUSED(try(&d, &err), TOBI_INVALID, "makes one kind of waves: regular, solitary or irregular");
+    REFUSED(try(&d, &err), TOBI_INVALID, "makes one kind of waves: regular, solitary, irregular or focused");
     d.height = 0.1;
     REFUSED(try(&d, &err), TOBI_INVALID, "regular waves of a height of 0.1 m have no period");
     d.period = 1;
@@ -174,11 +262,80 @@ static void what_cannot_be_is_refused(void **state)
     d.significant_height = 0.1;
     d.peak_period = 2;
     d.components = 0;
-    REFUSED(try(&d, &err), TOBI_INVALID, "irregular waves have 0 components");
+    REFUSED(try(&d, &err), TOBI_INVALID, "the waves have 0 components");
     d.depth = 0;
     REFUSED(try(&d, &err), TOBI_INVALID, "needs the depth of the water and gravity");
     d.depth = NAN;
     REFUSED(try(&d, &err), TOBI_INVALID, "every number of a wave maker must be finite");
+}
+
+static void groups_that_cannot_be_are_refused(void **state)
+{
+    tobi_wave_maker_def d = make_def();
+    (void)state;
+    d.focused_height = 0.05;
+    d.peak_period = 1.6;
+    REFUSED(try(&d, &err), TOBI_INVALID, "a focused group needs a peak_period and a distance");
+    d.focus_distance = 6;
+    REFUSED(try(&d, &err), TOBI_INVALID, "are at the focus, 6 m away, at 4.176 s");
+    d.focus_time = 12;
+    d.focused_height = 0.3;
+    REFUSED(try(&d, &err), TOBI_INVALID, "a focused crest 0.3 m high with a peak period of 1.6 s breaks");
+    d.focused_height = 0.05;
+    d.components = 0;
+    REFUSED(try(&d, &err), TOBI_INVALID, "the waves have 0 components");
+    d.components = 50;
+    d.record_file = "any.csv";
+    REFUSED(try(&d, &err), TOBI_INVALID, "given are 2");
+}
+
+static void records_that_cannot_be_are_refused(void **state)
+{
+    tobi_wave_maker_def d = make_def();
+    static const struct { const char *text, *why; } bad[] = {
+        { "time,x\n0,1\n1,2\n", ":1: there is no column of levels named level" },
+        { "level\n0\n1\n", ":1: there is no column \"time\"" },
+        { "time,level\n0,1\n0,2\n", ":3: time 0 s does not come after 0 s" },
+        { "time,level\n0,a\n", ":2: \"a\" in column level is no finite number" },
+        { "time,level [ft]\n0,1\n", ":1: column level is in [ft]; allowed is [m], [cm], [mm]" },
+        { "time,level,level\n0,1,1\n", ":1: a column comes twice: level" },
+        { "time,level\n0,1\n0.1,1.1\n", "its 0.1 s are less than two periods of the shortest wave" },
+        { "time,level\n0,1\n1e5,1.1\n", "have more than 10000 regular waves" },
+        { "time,level\n0,1\n20,1\n", "its level does not change" },
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof bad/sizeof *bad; k++) {
+        d.record_file = write_record(bad[k].text);
+        REFUSED(try(&d, &err), TOBI_INVALID, bad[k].why);
+    }
+    d.record_file = write_record("t,level\n0,0\n1,1\n2,0\n3,1\n4,0\n");
+    d.longest_period = 1.1;
+    d.shortest_period = 1.05;
+    REFUSED(try(&d, &err), TOBI_INVALID, "no wave of its 4 s has a period between shortest_period, 1.05 s, "
+            "and longest_period, 1.1 s");
+    d.longest_period = 1;
+    REFUSED(try(&d, &err), TOBI_INVALID, "longest_period, 1 s, is not greater than shortest_period, 1.05 s");
+    d.record_distance = -1;
+    REFUSED(try(&d, &err), TOBI_INVALID, "must not be below 0; given are -1 m");
+    remove(d.record_file);
+    d.record_distance = 0;
+    d.longest_period = 0;
+    REFUSED(try(&d, &err), TOBI_NOT_FOUND, "record");
+}
+
+/* A row of many columns, as tables of a laboratory have; too many are refused. */
+static void records_have_many_columns(void **state)
+{
+    tobi_wave_maker_def d = make_def();
+    char text[16384] = "time,level";
+    (void)state;
+    for (int k = 0; k < 1022; k++) snprintf(text + strlen(text), sizeof text - strlen(text), ",G%d", k);
+    d.record_file = write_record(text);
+    REFUSED(try(&d, &err), TOBI_INVALID, "no rows");
+    snprintf(text + strlen(text), sizeof text - strlen(text), ",more");
+    d.record_file = write_record(text);
+    REFUSED(try(&d, &err), TOBI_INVALID, ":1: more columns than are allowed, 1024");
+    remove(d.record_file);
 }
 
 /* A piston in front of a side, closer to it than its stroke. */
@@ -265,10 +422,15 @@ int main(void)
         cmocka_unit_test(regular_waves_have_their_stroke),
         cmocka_unit_test(solitary_waves_have_gorings_stroke),
         cmocka_unit_test(irregular_waves_have_their_height),
+        cmocka_unit_test(crests_of_a_group_meet),
+        cmocka_unit_test(recorded_levels_come_again),
         cmocka_unit_test(flaps_turn_about_their_hinge),
         cmocka_unit_test(strokes_fit_into_the_tank),
         cmocka_unit_test(other_strokes_are_noted),
         cmocka_unit_test(what_cannot_be_is_refused),
+        cmocka_unit_test(groups_that_cannot_be_are_refused),
+        cmocka_unit_test(records_that_cannot_be_are_refused),
+        cmocka_unit_test(records_have_many_columns),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
