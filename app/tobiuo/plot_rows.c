@@ -105,6 +105,12 @@ const picture_row plot_body[] = {
         { TEXT("shift since the start"), "m", 0, 0, 0, 1, 0, XYZ("position") },
         { TEXT("velocity"), "m/s", 0, 0, 0, 0, 0, XYZ("velocity") },
         { TEXT("angular velocity"), "rad/s", 0, 0, 0, 0, 0, XYZ("angular_velocity") } } },
+    { "turn", TEXT("Turn of %s"), 1, {
+        { TEXT("turn since the rest pose"), "degrees", 0, 0, 0, 0, 0,
+          { { TEXT("roll"), "roll", NULL, CURVE_LINE, 0, "roll", NULL },
+            { TEXT("pitch"), "pitch", NULL, CURVE_LINE, 1, "pitch", NULL },
+            { TEXT("yaw"), "yaw", NULL, CURVE_LINE, 2, "yaw", NULL },
+            { TEXT("angle"), "angle", NULL, CURVE_LINE, 0, "angle", NULL } } } } },
     { "force", TEXT("Force of the particles on %s"), 0, {
         PARTS("force", "x", "N", EDGE("x")), PARTS("force", "y", "N", EDGE("y")),
         PARTS("force", "z", "N", EDGE("z")) } },
@@ -166,9 +172,15 @@ const char *plot_unit(const char *column, int dimension)
         { "energy", "J", "J per m" }, { "work", "J", "J per m" }, { "dissipation", "J", "J per m" },
         { "momentum", "kg m/s", "kg m/s per m" }, { "tension", "N", "N per m" },
         { "angle", "degrees", "degrees" }, { "gap", "m", "m" },
+        { "roll", "degrees", "degrees" }, { "pitch", "degrees", "degrees" }, { "yaw", "degrees", "degrees" },
     };
+    const char *unit = "", *end = column;      /* names of bodies and sensors stand before the quantity */
     if (strcmp(column, "dt") == 0 || strcmp(column, "time") == 0) return "s";
     for (size_t k = 0; k < sizeof units / sizeof *units; k++)
-        if (strstr(column, units[k].part)) return dimension == 2 ? units[k].unit_2d : units[k].unit;
-    return "";
+        for (const char *at = column; (at = strstr(at, units[k].part)); at++)
+            if (at + strlen(units[k].part) > end) {
+                end = at + strlen(units[k].part);
+                unit = dimension == 2 ? units[k].unit_2d : units[k].unit;
+            }
+    return unit;
 }

@@ -106,14 +106,14 @@ static void add_measure(measures *m, int file, const char *body, const char *col
 
 static void find_body_measures(const sweep *s, measures *m, int file)
 {
-    static const char *const of_body[] = { "position_x", "position_y", "position_z",
-                                           "force_x", "force_y", "force_z" };
+    static const char *const of_body[] = { "position_x", "position_y", "position_z", "angle", "roll", "pitch",
+                                           "yaw", "force_x", "force_y", "force_z" };
     const table *t = sweep_first_table(m->of[file], s->runs);
     const int name = t ? table_column(t, "name") : -1;
     for (size_t i = 0; name >= 0 && i < t->rows; i++) {
         const char *body = t->cells[i*(size_t)t->columns + (size_t)name];
         if (i > 0 && strcmp(body, t->cells[name]) == 0) return;      /* the second output begins */
-        for (int a = 0; a < 6; a++) {
+        for (size_t a = 0; a < sizeof of_body/sizeof *of_body; a++) {
             const measure one = { file, body, of_body[a] };
             const digest d = digest_measure(t, &one, -INFINITY);
             if (d.high > d.low) add_measure(m, file, body, of_body[a]);

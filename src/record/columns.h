@@ -168,11 +168,16 @@
     B("force_work", "J", work[TOBI_BY_FORCE], \
       "Done on it by force and torque of the scene and by those of its control program since the start.")
 
-/* The last columns of bodies.csv: those of 2-D, those of air resistance, those of a frame and the like, those
-   of nests. */
+/* The last columns of bodies.csv: those of 2-D or of 3-D, those of air resistance, those of a frame and the
+   like, those of nests. */
 #define BODY_2D(B) \
     B("angle", "degrees", run->works.angle[k]*180/acos(-1), \
       "Turn since the rest pose, counterclockwise, with whole turns; in 2-D.")
+#define BODY_3D(B) \
+    B("roll", "degrees", turn[0], \
+      "Turn about x since the rest pose, the first of three, as in keyframes; in 3-D.") \
+    B("pitch", "degrees", turn[1], "The turn after it, about y: positive lowers what lies ahead along x.") \
+    B("yaw", "degrees", turn[2], "The last turn, about z.")
 #define BODY_AIR(B) \
     B("air_work", "J", work[TOBI_BY_AIR], \
       "Done on it by its air_resistance since the start, below 0; where there is any.")

@@ -87,7 +87,8 @@ enum { HISTORY_COLUMNS = sizeof history_columns/sizeof *history_columns };
 #undef H
 #define B(name, unit, value, doc) { name, NULL },
 static const tobi_csv_column body_columns[] = {
-    { "time", NULL }, { "name", NULL }, BODY(B) BODY_2D(B) BODY_AIR(B) BODY_FIELD(B) BODY_NEST(B) };
+    { "time", NULL }, { "name", NULL }, BODY(B) BODY_2D(B) BODY_3D(B) BODY_AIR(B)
+    BODY_FIELD(B) BODY_NEST(B) };
 enum { BODY_COLUMNS = sizeof body_columns/sizeof *body_columns };
 #undef B
 
@@ -102,7 +103,7 @@ static const tobi_column history[] = {
 #define B(name, unit, value, doc) { name, unit, doc },
 static const tobi_column body[] = {
     { "time", "s", "Simulated time." }, { "name", "text", "Name of the body." }, BODY(B)
-    BODY_2D(B) BODY_AIR(B) BODY_FIELD(B) BODY_NEST(B) };
+    BODY_2D(B) BODY_3D(B) BODY_AIR(B) BODY_FIELD(B) BODY_NEST(B) };
 #undef B
 #define S(name, unit, value, doc) { name, unit, doc },
 static const tobi_column solid[] = {
@@ -174,6 +175,8 @@ static bool has_buoyancy(const tobi_run *run)
 
 static bool is_flat(const tobi_run *run) { return run->world->sim.def.dimension == 2; }
 
+static bool is_solid(const tobi_run *run) { return !is_flat(run); }
+
 static bool has_air(const tobi_run *run)
 {
     bool has = false;
@@ -200,7 +203,8 @@ static bool has_nests(const tobi_run *run)
 typedef struct of_some { bool (*has)(const tobi_run *run); int columns; } of_some;
 static const of_some history_of_some[] = {
     { has_zones, 1 }, { has_buoyancy, 1 }, { has_air, 1 }, { has_field, 1 }, { has_nests, 1 } };
-static const of_some body_of_some[] = { { is_flat, 1 }, { has_air, 1 }, { has_field, 1 }, { has_nests, 7 } };
+static const of_some body_of_some[] = {
+    { is_flat, 1 }, { is_solid, 3 }, { has_air, 1 }, { has_field, 1 }, { has_nests, 7 } };
 
 static int choose_columns(const tobi_run *run, const tobi_csv_column *all, int count, const of_some *some,
                           int kinds, tobi_csv_column *out)
@@ -235,6 +239,16 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
     return tobi_probes_open(run, continued, err);
 }
 
+/* The angles, degrees, about x, then y, then z, of a unit quaternion. At a pitch of 90 degrees, where only
+   the sum or difference of the others counts, all of it may be in either. */
+static void find_turns(const double q[4], double turn[3])
+{
+    const double degrees = 180/acos(-1), s = 2*(q[0]*q[2] - q[1]*q[3]);
+    turn[0] = degrees*atan2(2*(q[0]*q[1] + q[2]*q[3]), 1 - 2*(q[1]*q[1] + q[2]*q[2]));
+    turn[1] = degrees*asin(s > 1 ? 1 : s < -1 ? -1 : s);
+    turn[2] = degrees*atan2(2*(q[0]*q[3] + q[1]*q[2]), 1 - 2*(q[2]*q[2] + q[3]*q[3]));
+}
+
 static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *err)
 {
     for (int k = 0; k < tobi_world_body_count(run->world); k++) {
@@ -242,6 +256,8 @@ static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *e
         TOBI_TRY(tobi_world_body(run->world, k, &b));
         const tobi_body_tally m = mean_of_body(&run->body_since[k]);
         const double *work = run->works.body[k], *finer = run->world->sim.bodies[k].rigid.finer;
+        double turn[3];
+        find_turns(b.orientation, turn);
         tobi_body_energy e;
         TOBI_TRY(tobi_world_body_energy(run->world, k, &e));
         tobi_csv_add_real(run->bodies, tobi_world_time(run->world));
@@ -249,6 +265,7 @@ static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *e
 #define B(name, unit, value, doc) tobi_csv_add_real(run->bodies, value);
         BODY(B)
         if (is_flat(run)) { BODY_2D(B) }
+        else { BODY_3D(B) }
         if (has_air(run)) { BODY_AIR(B) }
         if (has_field(run)) { BODY_FIELD(B) }
         if (has_nests(run)) { BODY_NEST(B) }

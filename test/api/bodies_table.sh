@@ -39,6 +39,15 @@ expect 0 "" run spin.json --out solid --quiet --until 0.1 --set dimension=3 --se
     --set domain.min='[0,0,0]' --set gravity='[0,0,0]' --set bodies.top.box='{"min":[0.3,0.4,0.4],"max":[0.7,0.6,0.6]}' \
     --set bodies.rotor.box='{"min":[1.3,0.4,0.4],"max":[1.7,0.6,0.6]}' --set bodies.rotor.motion.rotation.center='[1.5,0.5,0.5]'
 check "in 3-D there is none" test "$(head -1 solid/bodies.csv | tr , '\n' | grep -cx angle)" = 0
+printf 'time,roll,pitch,yaw\n0,0,0,0\n0.1,20,-30,140\n' > turn.csv
+expect 0 "" run spin.json --out turned --quiet --until 0.1 --set dimension=3 --set domain.max='[2,1,1]' \
+    --set domain.min='[0,0,0]' --set gravity='[0,0,0]' --set bodies.top.box='{"min":[0.3,0.4,0.4],"max":[0.7,0.6,0.6]}' \
+    --set bodies.rotor.box='{"min":[-0.2,-0.1,-0.1],"max":[0.2,0.1,0.1]}' --set bodies.rotor.translation='[1.5,0.5,0.5]' \
+    --set bodies.rotor.motion='{"keyframes":{"file":"turn.csv","pivot":[1.5,0.5,0.5]}}'
+check "roll, pitch and yaw are those of keyframes" \
+    awk -F, "$rows"' $1 > 0 && $2 == "rotor" { good = ($at["roll"] - 20)^2 + ($at["pitch"] + 30)^2 + ($at["yaw"] - 140)^2 < 1e-18 }
+                     END { exit !good }' turned/bodies.csv
+check "in 2-D there are none" test "$(head -1 whole/bodies.csv | tr , '\n' | grep -cx 'roll\|pitch\|yaw')" = 0
 check "but the works" test "$(head -1 solid/bodies.csv | tr , '\n' | grep -cx 'work\|contact_work\|motion_work\|force_work')" = 4
 
 # force_work: 6 N along x from rest on 2 kg are 36/4 t^2 J; 4 N of a program on 2 kg against 1 m/s take 4 t - 4 t^2.

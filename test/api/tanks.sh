@@ -166,6 +166,8 @@ if command -v gnuplot > /dev/null; then
     check "a curve per method" grep -q "method=wcsph" s/sweep_means.svg
     check "of the means" grep -q "mean wall_pressure, Pa" s/sweep_means.svg
     expect 1 'no run has a column "nothing"' "${sweep[@]}" --plot nothing
+    expect 0 "" sweep $flat --set probes.wall.name=weight --until 0.02 --out named --plot weight_pressure
+    check "a name says nothing of the unit" grep -q "weight_pressure, Pa" named/sweep.svg
 else
     "$program" "${sweep[@]}" --jobs 2 > out.txt 2> err.txt
 fi

@@ -22,7 +22,7 @@ static const char head[] =
     "| force of liquids and solids on a body | `bodies.csv` | `mean_pressure_force_x`, `_y`, `_z` and "
     "`mean_viscous_force_x`, `_y`, `_z` |\n"
     "| where a body is, how it is turned | `bodies.csv` | `position_x`, `_y`, `_z`; in 2-D `angle`, in 3-D "
-    "`orientation_w`, `_x`, `_y`, `_z` |\n"
+    "`roll`, `pitch`, `yaw` and `orientation_w`, `_x`, `_y`, `_z` |\n"
     "| torque of a stirrer, a propeller | `bodies.csv` | `mean_pressure_torque_z` + "
     "`mean_viscous_torque_z`; less its product with `angular_velocity_z` is the power of the motor |\n"
     "| force on a knife's edge | `bodies.csv` | `mean_edge_force_x`, `_y`, `_z` |\n"
