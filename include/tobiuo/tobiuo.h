@@ -181,7 +181,8 @@ TOBI_API tobi_status tobi_world_start(tobi_world *world, tobi_error *err);
    still, or when the end, end_time of the definition, lies more than 1e9 steps of the present length away. */
 TOBI_API tobi_status tobi_world_step(tobi_world *world, double max_dt, tobi_step_info *info,
                                      tobi_error *err);
-/* Steps until time t (s), hit exactly; nothing if the world is there already. */
+/* Steps until time t (s), hit exactly; nothing if the world is there already. TOBI_INVALID for a t before
+   its time. */
 TOBI_API tobi_status tobi_world_advance(tobi_world *world, double t, tobi_step_info *info, tobi_error *err);
 
 /* Asked by the thread that steps, between steps and between the iterations of a solve; an answer other than 0

@@ -264,14 +264,16 @@ class World:
         return self.info
 
     def advance(self, time):
-        """Steps until `time` (s), which is hit exactly."""
+        """Steps until `time` (s), not for so long; it is hit exactly."""
         if not self.nests:
             self._call(lib.tobi_world_advance, float(time), ffi.NULL)
             return
         self._follow()
-        while not self.time >= time:
+        while True:
             self._call(lib.tobi_world_step_to, float(time))
             self._follow()
+            if self.time >= time:
+                return
 
     def _catch_up(self):
         """Nests that Ctrl-C or a motion has stopped, before something changes; one that fails stays behind."""

@@ -380,17 +380,26 @@ tobi_status tobi_world_step_towards(tobi_world *w, double t, double end, tobi_er
     return TOBI_OK;
 }
 
+/* Rounding of a time that a caller has summed up is no way back. */
+static tobi_status check_goal(const tobi_world *w, double t, tobi_error *err)
+{
+    if (!isfinite(t)) return tobi_fail(err, TOBI_INVALID, "the time to advance to is %g s, not finite", t);
+    if (t >= w->sim.time - 1e-9*fabs(w->sim.time)) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "the time to advance to, %g s, has passed: it is %g s already; t is "
+                     "the time to go on until, not how long", t, w->sim.time);
+}
+
 tobi_status tobi_world_step_to(tobi_world *w, double t, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);
-    if (!isfinite(t)) return tobi_fail(err, TOBI_INVALID, "the time to advance to is %g s, not finite", t);
+    TOBI_TRY(check_goal(w, t, err));
     return w->sim.time < t ? tobi_world_step_towards(w, t, t, err) : TOBI_OK;
 }
 
 tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);
-    if (!isfinite(t)) return tobi_fail(err, TOBI_INVALID, "the time to advance to is %g s, not finite", t);
+    TOBI_TRY(check_goal(w, t, err));
     while (w->sim.time < t) TOBI_TRY(tobi_world_step_towards(w, t, t, err));
     if (info) {
         measure(w);

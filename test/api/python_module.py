@@ -92,6 +92,8 @@ class Module(unittest.TestCase):
             self.assertEqual(other.nests["middle"].time, 0.05)
             other.advance(0.1)
             self.assertEqual((world.hash, nest.hash), (other.hash, other.nests["middle"].hash))
+            with self.assertRaisesRegex(tobiuo.Error, "has passed"):
+                world.advance(0.05)
             world.set_gravity([5, 0])
             world.step()
             self.assertEqual(nest.time, world.time)

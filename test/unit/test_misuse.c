@@ -277,8 +277,13 @@ static void times_that_are_none(void **state)
     for (int k = 0; k < 2; k++)
         REFUSED(tobi_world_advance(w, none[k], NULL, &err), TOBI_INVALID, "the time to advance to is ");
     assert_true(tobi_world_time(w) == 0);
-    OK(tobi_world_advance(w, -1, NULL, &err));
+    REFUSED(tobi_world_advance(w, -1, NULL, &err), TOBI_INVALID,
+            "the time to advance to, -1 s, has passed: it is 0 s");
     OK(tobi_world_step(w, 0, NULL, &err));
+    const double t = tobi_world_time(w);
+    OK(tobi_world_advance(w, t*(1 - 1e-12), NULL, &err));
+    REFUSED(tobi_world_advance(w, 0.5*t, NULL, &err), TOBI_INVALID, "not how long");
+    assert_true(tobi_world_time(w) == t);
     tobi_world_destroy(w);
 }
 
