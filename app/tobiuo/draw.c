@@ -159,14 +159,14 @@ static void note_end(const draw_options *o, const tobi_results *results)
     const double end = last >= 0 ? tobi_results_time(results, last) : 0;
     const double step = last > 0 ? end - tobi_results_time(results, last - 1) : 0;
     if (o->output < 0 && o->time > end + step)
-        fprintf(stderr, "tobiuo: note: the results of %s end at %g s\n", o->dir, end);
+        complain("note: the results of %s end at %g s", o->dir, end);
 }
 
 static void note_camera(const source *s)
 {
     const char *body = tobi_drawing_body_around(s->drawing);
     if (body)
-        fprintf(stderr, "tobiuo: note: the camera is inside of the body '%s', which hides all else\n", body);
+        complain("note: the camera is inside of the body '%s', which hides all else", body);
 }
 
 static int draw(const draw_options *o, source *s)
@@ -183,7 +183,7 @@ static int draw(const draw_options *o, source *s)
     const char *out = o->out ? o->out : path;
     note_camera(s);
     code = write_drawing(s, out);
-    if (code == 0) printf("picture: %s, %d x %d, %s\n", out, p->width, p->height, p->title);
+    if (code == 0) printf(tr("picture: %s, %d x %d, %s\n"), out, p->width, p->height, p->title);
     free(path);
     return code;
 }
@@ -224,7 +224,7 @@ static int draw_gaps(source *s, const char *dir, const char *view, const char *f
     long long missing = 0, lost = 0;
     int code = 0;
     for (int64_t k = 0; (k = find_gap(folder, view, k)) < count; k++) missing++;
-    if (missing > 0) fprintf(stderr, "tobiuo: note: draws %lld picture%s into %s/frames\n", missing,
+    if (missing > 0) complain("note: draws %lld picture%s into %s/frames", missing,
                              missing > 1 ? "s" : "", folder);
     for (int64_t k = 0; code == 0 && (k = find_gap(folder, view, k)) < count; k++) {
         code = draw_into(s, dir, view, folder, k, &lost);
@@ -241,7 +241,7 @@ static int draw_anew(source *s, const char *dir, const char *view)
     int code = 0;
     for (int64_t k = 0; k < count; k++) there += is_picture(dir, view, k);
     if (there > 0)
-        fprintf(stderr, "tobiuo: note: draws %lld picture%s in %s/frames anew\n", there, there > 1 ? "s" : "",
+        complain("note: draws %lld picture%s in %s/frames anew", there, there > 1 ? "s" : "",
                 dir);
     for (int64_t k = 0; code == 0 && k < count; k++)
         if (is_picture(dir, view, k)) code = draw_into(s, dir, view, dir, k, &lost);

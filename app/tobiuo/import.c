@@ -70,7 +70,7 @@ int tobiuo_import(int argc, char **argv)
     tobi_error err = { 0 };
     tobi_status status = tobi_scene_import(o.path, o.out, o.force, &table, &report, &err);
     int code = status == TOBI_OK ? 0 : complain_scene(report, &err);
-    if (code == 0 && !o.quiet) printf("%s\nwritten to %s\n", table, o.out);
+    if (code == 0 && !o.quiet) printf(tr("%s\nwritten to %s\n"), table, o.out);
     free(table);
     free(o.path);
     free(o.beside);

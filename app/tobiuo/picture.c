@@ -27,6 +27,11 @@ static void write_text(FILE *script, const char *text)
     fputc('"', script);
 }
 
+void picture_label(panel *a, const char *quantity, const char *unit)
+{
+    snprintf(a->y_label, sizeof a->y_label, *unit ? tr("%s, %s") : "%s", quantity, tr(unit));
+}
+
 void picture_begin_script(FILE *script, const char *format)
 {
     fputs("# Draws the pictures of this folder: gnuplot -d plots.gnuplot\n"

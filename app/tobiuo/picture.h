@@ -34,6 +34,8 @@ typedef struct picture {
     panel panel[PANEL_LIMIT];
 } picture;
 
+/* Writes "quantity, unit" beside a panel, the unit from English, or "". */
+void picture_label(panel *a, const char *quantity, const char *unit);
 /* The head of a script: format is "svg" or "png". */
 void picture_begin_script(FILE *script, const char *format);
 /* The commands that draw the picture into `file`, in gnuplot's working directory. */

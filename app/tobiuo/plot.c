@@ -107,7 +107,7 @@ static void write_y_label(panel *a, const char *quantity, const char *unit, int 
 {
     char whole[40];
     snprintf(whole, sizeof whole, per_depth ? "%s per m" : "%s", unit);
-    snprintf(a->y_label, sizeof a->y_label, *unit ? tr("%s, %s") : "%s", quantity, tr(whole));
+    picture_label(a, quantity, whole);
 }
 
 /* Columns that older runs lack are left out, and panels of what the method does not have. */
@@ -188,7 +188,7 @@ static int draw_rows(plotter *plot, const rows *r, const picture_row *list)
             code = add_panel(&p, r, &row->panels[k], plot->dimension);
         for (int k = 0; k < p.panels; k++) drawn += panel_has_values(&p, &p.panel[k]);
         if (!drawn && !row->optional && !(plot->is_nest && r->name) && code == 0)
-            fprintf(stderr, "tobiuo: note: %s has no values for the picture \"%s\"\n",
+            complain("note: %s has no values for the picture \"%s\"",
                     r->table->path, p.title);
         if (drawn && code == 0) code = finish_picture(plot, &p, name);
         picture_free(&p);
@@ -218,7 +218,7 @@ static int add_columns(picture *p, const table *t, const char *what, int dimensi
     panel *a = &p->panel[p->panels];
     const size_t length = strlen(what);
     int left_out = 0;
-    write_y_label(a, what, plot_unit(what, dimension), 0);
+    write_y_label(a, tr(what), plot_unit(what, dimension), 0);
     for (int k = 0; k < t->columns; k++) {
         size_t size = strlen(t->names[k]);
         if (size <= length || t->names[k][size - length - 1] != '_' ||
@@ -234,7 +234,7 @@ static int add_columns(picture *p, const table *t, const char *what, int dimensi
         c->colour = a->curves - 1;
     }
     if (left_out)
-        fprintf(stderr, "tobiuo: note: %d more columns \"%s\" of %s are not drawn\n", left_out, what,
+        complain("note: %d more columns \"%s\" of %s are not drawn", left_out, what,
                 t->path);
     if (a->curves > 0) p->panels++;
     return 0;
@@ -291,7 +291,7 @@ static int add_reference(picture *p, const tobi_reference_def *def)
             c->colour = a->curves - 1;
             panel alone = { .curves = 1, .curve = { *c } };
             if (!panel_has_values(p, &alone))
-                fprintf(stderr, "tobiuo: note: %s has no value between %g and %g s\n", def->file,
+                complain("note: %s has no value between %g and %g s", def->file,
                         p->begin, p->end);
         }
     }
@@ -326,7 +326,7 @@ static int draw_comparison(plotter *plot, int index)
     }
     picture p = { .panels = 1 };
     snprintf(p.title, sizeof p.title, "%s%s%s", owner, owner[0] ? ": " : "", def->column);
-    write_y_label(&p.panel[0], def->column, plot_unit(def->column, plot->dimension), 0);
+    write_y_label(&p.panel[0], tr(def->column), plot_unit(def->column, plot->dimension), 0);
     snprintf(name, sizeof name, "compare_%.280s", full);
     set_time_axis(&p, r.table);
     curve *c = add_curve(&p.panel[0], tr("this run"), r.table->rows);
@@ -402,7 +402,7 @@ static int read_scene(plotter *plot)
     free(path);
     if (status == TOBI_OK) plot->dimension = tobi_scene_world_def(plot->scene)->dimension;
     else if (o->scene) return complain_scene(report, &err);
-    else fprintf(stderr, "tobiuo: note: drawn without reference data, because of %s\n", err.text);
+    else complain("note: drawn without reference data, because of %s", err.text);
     tobi_report_free(report);
     return 0;
 }

@@ -133,28 +133,33 @@ const picture_row plot_solid[] = {
     { 0 }
 };
 
+/* Ends of the names of columns; axes tell them in the language of the user. */
 const columns_row plot_probes[] = {
-    { "probes_pressure", TEXT("Pressure at the probes"), { "pressure" } },
-    { "probes_velocity", TEXT("Velocity at the probes"), { "velocity_x", "velocity_y", "velocity_z" } },
-    { "probes_force", TEXT("Force on the probes"), { "force_x", "force_y", "force_z" } },
-    { "probes_moment", TEXT("Moment on the probes"), { "moment_x", "moment_y", "moment_z" } },
-    { "probes_level", TEXT("Level of the fluid at the probes"), { "level" } },
-    { "probes_run_up", TEXT("Run-up at the probes"), { "run_up" } },
-    { "probes_flow", TEXT("Flow through the probes"), { "flow" } },
-    { "probes_volume", TEXT("Volume in the probes"), { "volume" } },
+    { "probes_pressure", TEXT("Pressure at the probes"), { TEXT("pressure") } },
+    { "probes_velocity", TEXT("Velocity at the probes"),
+      { TEXT("velocity_x"), TEXT("velocity_y"), TEXT("velocity_z") } },
+    { "probes_force", TEXT("Force on the probes"), { TEXT("force_x"), TEXT("force_y"), TEXT("force_z") } },
+    { "probes_moment", TEXT("Moment on the probes"),
+      { TEXT("moment_x"), TEXT("moment_y"), TEXT("moment_z") } },
+    { "probes_level", TEXT("Level of the fluid at the probes"), { TEXT("level") } },
+    { "probes_run_up", TEXT("Run-up at the probes"), { TEXT("run_up") } },
+    { "probes_flow", TEXT("Flow through the probes"), { TEXT("flow") } },
+    { "probes_volume", TEXT("Volume in the probes"), { TEXT("volume") } },
     { 0 }
 };
 
 const columns_row plot_lines[] = {
-    { "lines", TEXT("Lines"), { "tension", "distance" } },
+    { "lines", TEXT("Lines"), { TEXT("tension"), TEXT("distance") } },
     { 0 }
 };
 
 const columns_row plot_joints[] = {
-    { "joints_force", TEXT("Force of the joints"), { "force_x", "force_y", "force_z" } },
-    { "joints_moment", TEXT("Moment of the joints"), { "moment_x", "moment_y", "moment_z" } },
-    { "joints_angle", TEXT("Angle and gap of the joints"), { "angle", "gap" } },
-    { "joints_power", TEXT("Motors and dampers of the joints"), { "motor_torque", "motor_force", "power" } },
+    { "joints_force", TEXT("Force of the joints"), { TEXT("force_x"), TEXT("force_y"), TEXT("force_z") } },
+    { "joints_moment", TEXT("Moment of the joints"),
+      { TEXT("moment_x"), TEXT("moment_y"), TEXT("moment_z") } },
+    { "joints_angle", TEXT("Angle and gap of the joints"), { TEXT("angle"), TEXT("gap") } },
+    { "joints_power", TEXT("Motors and dampers of the joints"),
+      { TEXT("motor_torque"), TEXT("motor_force"), TEXT("power") } },
     { 0 }
 };
 

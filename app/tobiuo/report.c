@@ -429,7 +429,7 @@ static int make_report(const char *dir, const char *name, double from, int force
     if (code == 0 && !force && access(out, F_OK) == 0) code = complain("%s exists; --force replaces it", out);
     if (code == 0 && !name && make) inner = report_nests(&r, make, force);
     if (code == 0) code = write_file(&r, out);
-    if (code == 0) printf("report: %s\n", out);
+    if (code == 0) printf(tr("report: %s\n"), out);
     free_run(&r);
     free(out);
     return code ? code : inner;

@@ -48,8 +48,9 @@ static void fill_panel(const sample_run *s, const quantity *q, char labels[][48]
     const sample_field *f = &s->field[q->field];
     const char *part = sample_component(f->components, q->part);
     const int mean = s->options->mean, lines = s->options->line_count;
-    snprintf(a->y_label, sizeof a->y_label, "%s%s%s%s%s", f->name, *part ? "_" : "", part,
-             *f->unit ? ", " : "", f->unit);
+    char name[80];
+    snprintf(name, sizeof name, "%.60s%s%s", f->name, *part ? "_" : "", part);
+    picture_label(a, tr(name), f->unit);
     for (int k = 0; k < (mean ? 1 : s->shown_count); k++) {
         double *rms, *values = copy_values(s, q->field, mean ? -1 : k, &rms);
         for (int l = 0; l < lines; l++) {
@@ -125,7 +126,7 @@ int sample_draw(const sample_run *s)
         if (p->panels) picture_write(out, p, name);
         if (fclose(out) != 0) code = complain("cannot write %s: %s", script, tr(strerror(errno)));
         if (!code && p->panels) code = run_gnuplot(folder);
-        if (!code && p->panels) printf("picture: %s/%s\n", folder, name);
+        if (!code && p->panels) printf(tr("picture: %s/%s\n"), folder, name);
         picture_free(p);
     }
     free(p);

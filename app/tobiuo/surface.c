@@ -319,7 +319,7 @@ static int write_movie(const surface_options *o, const tobi_results *results, co
     if (code == 0 && tobi_surface_movie_finish(movie, &err) != TOBI_OK) code = complain("%s", err.text);
     tobi_surface_movie_free(movie);
     if (code == 0)
-        printf("surface: %s, %lld %s", path, (long long)t->files, t->files == 1 ? "frame" : "frames");
+        printf(tr("surface: %s, %lld frame%s"), path, (long long)t->files, t->files == 1 ? "" : "s");
     free(path);
     return code;
 }
@@ -344,7 +344,7 @@ static int write_files(const surface_options *o, const tobi_results *results, in
     if (code == 0 && strcmp(o->format, "vtp") == 0)
         code = write_series_list(o->dir, "surface", results, first);
     if (code == 0)
-        printf("surface: %s, %lld %s", folder, (long long)t->files, t->files == 1 ? "file" : "files");
+        printf(tr("surface: %s, %lld file%s"), folder, (long long)t->files, t->files == 1 ? "" : "s");
     free(folder);
     return code;
 }
@@ -397,7 +397,7 @@ static int make(surface_options *o)
     code = strcmp(o->format, "glb") == 0 ? write_movie(o, results, up, first, &in, &t)
                                          : write_files(o, results, first, &in, &t);
     if (code == 0)
-        printf(", %.3g million triangles, %.3g million particles in %.3g s\n", 1e-6*(double)t.triangles,
+        printf(tr(", %.3g million triangles, %.3g million particles in %.3g s\n"), 1e-6*(double)t.triangles,
                1e-6*t.particles, wall_clock() - begun);
     free_input(&in);
     free(in.skins);

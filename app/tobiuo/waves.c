@@ -305,13 +305,14 @@ static int width_of(int column)
 
 static void print_tables(const wave_run *w)
 {
+    enum { GAUGES = 24 };
     const wave_set *s = &w->set;
     printf(tr("waves from %.4g to %.4g s, %.3g m deep, %.3g s and %.3g m long at the peak\n"), s->begin,
            s->begin + ((double)s->count - 1)*s->step, s->depth, 1/s->peak,
            wave_length(s->peak, s->depth, s->gravity));
-    printf("%-12s", "gauge");
+    print_columns(stdout, tr("gauge"), 12);
     for (int k = 0; k < COLUMNS; k++) printf("  %*s %s", width_of(k) - 2, columns[k].name, columns[k].unit);
-    printf("  waves\n");
+    printf("  %s\n", tr("waves"));
     for (int g = 0; g < s->gauges; g++) {
         printf("%-12s", s->gauge[g].name);
         for (int k = 0; k < COLUMNS; k++) printf("  %*.4g", width_of(k), number_of(&s->gauge[g], k));
@@ -321,10 +322,12 @@ static void print_tables(const wave_run *w)
         printf(tr("--gauges A,B,C tells the waves that go on from A to C, and those that come back\n"));
         return;
     }
-    printf("%-24s  on, H_m0 m  back, H_m0 m  reflection  transmission\n", "gauges");
+    print_columns(stdout, tr("gauges"), GAUGES);
+    printf("  ");
+    puts(tr("on, H_m0 m  back, H_m0 m  reflection  transmission"));
     for (int k = 0; k < w->options->group_count; k++) {
         const wave_group *r = &w->result[k];
-        printf("%-24s  %10.4g  %12.4g  %10.3g", w->options->groups[k], r->forward, r->back,
+        printf("%-*s  %10.4g  %12.4g  %10.3g", GAUGES, w->options->groups[k], r->forward, r->back,
                r->back/r->forward);
         if (k > 0) printf("  %12.3g", r->forward/w->result[0].forward);
         putchar('\n');

@@ -15,6 +15,7 @@ import tempfile
 ENGLISH = re.compile(r"[A-Za-z]{2,}(?:[ ,.;:]+[A-Za-z]+){2,}")      # three words
 PLOT_ENGLISH = re.compile(r"[A-Za-z]{2,}[ ,]+[A-Za-z]{2,}")         # names of columns are one word
 PLOT_TEXT = re.compile(r'(?:title|set [xy]label) "(.*)"')
+QUANTITY = re.compile(r'set ylabel "([a-z][a-z_]+[^"]*)"')
 NUMBER = re.compile(r"-?\d[-+.e\d]*")
 OPTIONAL_END = {"tr", "td", "th", "p"}
 VOID = {"meta", "img", "br"}
@@ -77,9 +78,9 @@ def english_of(page):
 
 
 def english_of_plots(folder):
-    """Of all titles and labels: gnuplot is not there, but its script is."""
-    texts = PLOT_TEXT.findall(pathlib.Path(folder, "plots", "plots.gnuplot").read_text(encoding="utf-8"))
-    return [text for text in texts if PLOT_ENGLISH.search(text)]
+    """Of all titles and labels, and of quantities at axes: gnuplot is not there, but its script is."""
+    script = pathlib.Path(folder, "plots", "plots.gnuplot").read_text(encoding="utf-8")
+    return [text for text in PLOT_TEXT.findall(script) if PLOT_ENGLISH.search(text)] + QUANTITY.findall(script)
 
 
 def run(program, *arguments, **variables):

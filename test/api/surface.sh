@@ -26,6 +26,7 @@ cp -r dam/surface own
 for format in vtp obj ply stl; do
     expect 0 "" surface dam --format $format
     check "$format: three files" test -s dam/surface/surface_000002.$format
+    check "$format: that is told" grep -q "^surface: dam/surface, 3 files, .* million triangles" out.txt
 done
 vtk "afterwards" dam/surface/surface_000002.vtp 'arrays={"group": 1, "normals": 3, "speed": 1, "pressure": 1}'
 vtk "its list" dam/surface.pvd 'times=[0, 0.05, 0.1]'
@@ -42,6 +43,8 @@ edges.Update()
 assert reader.GetOutput().GetNumberOfPolys() > 500 and edges.GetOutput().GetNumberOfCells() == 0
 assert reader.GetOutput().GetPointData().GetNormals() is not None'
 fi
+expect 0 "" surface dam --last --language ja
+check "in Japanese too" grep -q "^表面：dam/surface、1ファイル、三角形" out.txt
 check "no parts are left" test -z "$(find dam -name '*.part')"
 
 expect 2 "is none of vtp" run dam.json --out no --surface dxf

@@ -69,6 +69,11 @@ says "計算終了：t = 0.1 s"
 expect 1 "out：計算結果がある。何も変えていない" run tank.json --out out
 expect 0 "" sample out --line "0.2,0 to 0.2,0.2"
 says "補間：out/sample/"
+says "画像：out/plots/sample_line.svg"
+check "axes of profiles are Japanese" grep -q "圧力 (Pa)" out/plots/sample_line.svg
+check "no English at the axes of profiles" test -z "$(grep -E 'velocity|pressure' out/plots/sample_line.svg)"
+expect 0 "注意：outの計算結果は0.1 sで終わる" picture out --time 9
+says "画像：out/picture.png、"
 expect 1 "outにフィールド'heat'はない。" sample out --line "0.2,0 to 0.2,0.2" --fields heat
 expect 0 "" inspect tank.json --at 0.2,0.1 --out inspect
 says "カーネル         "
