@@ -169,8 +169,9 @@ static int fill_picture(const sweep *s, picture *p, int axis, const char *const 
     snprintf(p->title, sizeof p->title, "%s", s->dir);
     for (int k = 0; k < columns; k++) {
         panel *a = &p->panel[p->panels];
-        const char *unit = plot_unit(column[k], dimension), *of = axis < 0 ? "" : tr("mean ");
-        snprintf(a->y_label, sizeof a->y_label, "%s%s%s%s", of, column[k], *unit ? ", " : "", unit);
+        char what[60];
+        snprintf(what, sizeof what, "%s%.48s", axis < 0 ? "" : tr("mean "), column[k]);
+        picture_label(a, what, plot_unit(column[k], dimension));
         for (int run = 0; run < s->runs; run++)
             if (axis < 0) add_run(s, run, column[k], label[run], a, p);
             else add_mean(s, run, axis, column[k], label[run], a, p);
