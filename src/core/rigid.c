@@ -194,6 +194,17 @@ static tobi_status check_moving(const tobi_body_def *def, tobi_error *err)
     return TOBI_OK;
 }
 
+/* A start along or about a locked axis would be dropped without a word. */
+static tobi_status check_start(const tobi_rigid *r, const tobi_body_def *def, const char *key,
+                               const double given[3], const double has[3], tobi_error *err)
+{
+    if (!r->locked || !(vec3_distance2(given, has) > 1e-12*vec3_dot(given, given))) return TOBI_OK;
+    const tobi_status status = tobi_fail(err, TOBI_INVALID, "body '%s' cannot start with that %s: what is "
+                                         "locked stays at rest; a line or joint to a body with a motion "
+                                         "tows it", def->name ? def->name : "", key);
+    return tobi_at_key(err, status, "%s", key);
+}
+
 tobi_status tobi_rigid_init(tobi_rigid *r, const tobi_body_def *def, const tobi_massprops *rest,
                             const double centre[3], int dimension, tobi_error *err)
 {
@@ -222,6 +233,8 @@ tobi_status tobi_rigid_init(tobi_rigid *r, const tobi_body_def *def, const tobi_
     memcpy(r->velocity, def->velocity, sizeof r->velocity);
     multiply(r->inertia, def->angular_velocity, r->momentum);
     tobi_rigid_apply_locks(r);
+    TOBI_TRY(check_start(r, def, "velocity", def->velocity, r->velocity, err));
+    TOBI_TRY(check_start(r, def, "angular_velocity", def->angular_velocity, r->angular_velocity, err));
     return tobi_joint_init(r, def, lower, dimension, err);
 }
 

@@ -120,9 +120,12 @@ static void test_locks(void **state)
     tobi_rigid r;
     def.locked = "z,turn_x,turn_y";
     memcpy(def.inertia, (double[3]){ 2, 2, 4 }, sizeof def.inertia);
-    memcpy(def.velocity, (double[3]){ 1, 2, 3 }, sizeof def.velocity);
-    memcpy(def.angular_velocity, (double[3]){ 1, 1, 0.25 }, sizeof def.angular_velocity);
+    memcpy(def.velocity, (double[3]){ 1, 2, 0 }, sizeof def.velocity);
+    memcpy(def.angular_velocity, (double[3]){ 0, 0, 0.25 }, sizeof def.angular_velocity);
     make(&r, &def);
+    r.velocity[2] = 3;                   /* as of a force that acts along a locked axis */
+    r.momentum[0] = r.momentum[1] = 2;
+    tobi_rigid_apply_locks(&r);
     for (int k = 0; k < 1000; k++) step(&r, 0.001);
     assert_true(fabs(r.position[0] - 1) < 1e-12 && fabs(r.position[1] - 2) < 1e-12 && r.position[2] == 0);
     assert_true(fabs(2*atan2(r.orientation[3], r.orientation[0]) - 0.25) < 1e-12);
@@ -184,6 +187,12 @@ static void test_mistakes(void **state)
     refuse(&def, "locked has 'roll'");
     def.locked = "turn_y";
     refuse(&def, "about one axis is locked");
+    def.locked = "x,turn_x,turn_z";
+    def.velocity[0] = 1.5;
+    refuse(&def, "cannot start with that velocity: what is locked stays at rest");
+    def.velocity[0] = 0;
+    def.angular_velocity[2] = 0.1;
+    refuse(&def, "cannot start with that angular_velocity: what is locked");
     def = free_def();
     def.motion = no_motion;
     def.motion_rigid = 1;
