@@ -392,23 +392,27 @@ static void put(tobi_system *s, const tobi_opening *o, const tobi_inlet_column *
     p->fluid[i] = (uint8_t)o->fluid;
 }
 
-/* Liquid must lie before an outlet, not behind it. */
-static tobi_status check_outlet(const tobi_world *w, const tobi_opening *o, tobi_error *err)
+/* Where liquid lies at one side of a patch alone, it is before an outlet, and not behind an inlet: regions
+   leave out what is near behind an inlet, so that more of it counts there. */
+static tobi_status check_side(const tobi_world *w, const tobi_opening *o, tobi_error *err)
 {
     const tobi_particles *p = &w->system[0].particles;
-    const double h = w->system[0].smoothing.h;
-    int64_t before = 0, beyond = 0;
+    const double reach = o->outlet ? 2*w->system[0].smoothing.h : (TOBI_OPENING_BEHIND + 1)*o->depth;
+    int64_t behind = 0, ahead = 0;
     for (int64_t i = 0; i < p->count; i++) {
         const double x[3] = { p->position[i].x, p->position[i].y, p->position[i].z };
         double at[3];
         tobi_opening_locate(o, x, at);
-        if (!tobi_opening_faces(o, at) || fabs(at[0]) > 2*h) continue;
-        if (at[0] < 0) before++;
-        else beyond++;
+        if (!tobi_opening_faces(o, at) || fabs(at[0]) > reach) continue;
+        if (at[0] < 0) behind++;
+        else ahead++;
     }
-    if (beyond <= before || before > 0) return TOBI_OK;
-    return refuse_start(w, o, "normal", tr("faces inwards: liquid lies on the side that its normal points "
-                        "to, and none on the other"), err);
+    if (o->outlet ? behind > 0 || ahead == 0 : ahead > 0 || behind == 0) return TOBI_OK;
+    return refuse_start(w, o, "normal", o->outlet
+                        ? tr("faces inwards: liquid lies on the side that its normal points "
+                             "to, and none on the other")
+                        : tr("faces away from the liquid, which lies behind it: its normal is the way that "
+                             "liquid goes"), err);
 }
 
 tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err)
@@ -416,11 +420,9 @@ tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err)
     tobi_system *s = &w->system[0];
     for (int k = 0; k < w->sim.opening_count; k++) {
         tobi_opening *o = &w->sim.openings[k];
-        if (o->outlet) {
-            TOBI_TRY(check_outlet(w, o, err));
-            continue;
-        }
-        TOBI_TRY(make_columns(o, &s->smoothing, err));
+        if (!o->outlet) TOBI_TRY(make_columns(o, &s->smoothing, err));
+        TOBI_TRY(check_side(w, o, err));
+        if (o->outlet) continue;
         TOBI_TRY(check_place(o, &s->box, &s->smoothing, err));
         TOBI_TRY(check_bodies(w, o, err));
         const int64_t layers = count_layers(o);

@@ -268,6 +268,10 @@ static void test_mistakes(void **state)
            "\"bodies\": [ { \"name\": \"block\", \"box\": { \"min\": [0.2, 0, 0], "
            "\"max\": [0.4, 0.2, 1] } } ],",
            "outlet 'out' faces inwards: liquid lies on the side that its normal points to");
+    refuse(PATCH "\"centre\": [0.6, 0.1], \"normal\": [1, 0], \"width\": 0.2, \"speed\": 1 }", "",
+           "\"bodies\": [ { \"name\": \"block\", \"box\": { \"min\": [0.6, 0, 0], "
+           "\"max\": [1, 0.2, 1] } } ],",
+           "inlet 'in' faces away from the liquid, which lies behind it");
 }
 
 /* What --set gave is told as that, after the caller's texts are gone. */
