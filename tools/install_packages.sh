@@ -9,9 +9,10 @@ set -euo pipefail
 
 packages=(gcc libc6-dev cmake ninja-build pkg-config
           libjansson-dev libassimp-dev libluajit-5.1-dev libhdf5-dev zlib1g-dev liblz4-dev libmd-dev libpng-dev
-          libjpeg-dev libglfw3-dev)
+          libjpeg-dev libglfw3-dev libfreetype-dev libfontconfig-dev)
 plot_packages=(gnuplot-nox ffmpeg)
-test_packages=(gnuplot-nox ffmpeg chromium xvfb xdotool libgl1-mesa-dri g++ git libcmocka-dev python3 python3-numpy python3-matplotlib
+test_packages=(gnuplot-nox ffmpeg chromium man-db fontconfig fonts-vlgothic xvfb xdotool libgl1-mesa-dri g++ git libcmocka-dev
+               python3 python3-numpy python3-matplotlib
                python3-vtk9 python3-jsonschema python3-polib python3-cffi)
 
 list_only=0

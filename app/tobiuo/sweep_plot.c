@@ -169,8 +169,8 @@ static int fill_picture(const sweep *s, picture *p, int axis, const char *const 
     snprintf(p->title, sizeof p->title, "%s", s->dir);
     for (int k = 0; k < columns; k++) {
         panel *a = &p->panel[p->panels];
-        char what[60];
-        snprintf(what, sizeof what, "%s%.48s", axis < 0 ? "" : tr("mean "), column[k]);
+        char what[80];
+        snprintf(what, sizeof what, "%s%.60s", axis < 0 ? "" : tr("mean "), column[k]);
         picture_label(a, what, plot_unit(column[k], dimension));
         for (int run = 0; run < s->runs; run++)
             if (axis < 0) add_run(s, run, column[k], label[run], a, p);

@@ -3,25 +3,23 @@
 #define _GNU_SOURCE 1
 #include "viewer.h"
 #include "keys.h"
+#include "letters.h"
 #include "../tobiuo/app.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The letters of the window are those of English; what has others, such as an error in Japanese, goes to the
-   terminal. */
+/* What the window has no letters for, such as an error in Japanese without a font, goes to the terminal. */
 void viewer_note(viewer *v, const char *format, ...)
 {
-    int drawn = 1;
     va_list args;
     va_start(args, format);
-    vsnprintf(v->note, sizeof v->note, format, args);
+    vsnprintf(v->note, sizeof v->note, window_text(format), args);
     va_end(args);
-    for (const char *c = v->note; *c; c++) drawn &= (unsigned char)*c < 0x80;
-    if (!drawn && v->screen) {
+    if (!letters_have(v->note) && v->screen) {
         complain("%s", v->note);
-        snprintf(v->note, sizeof v->note, "told on the terminal");
+        snprintf(v->note, sizeof v->note, "%s", window_text(TEXT("told on the terminal")));
     }
     v->changed = 1;
 }
@@ -234,31 +232,31 @@ static void do_close(viewer *v)
 }
 
 const key_row key_rows[] = {
-    { 'h', "h", "this help", do_help }, { KEY_F1, NULL, NULL, do_help },
-    { 0, "drag, arrows", "turn; in 2-D move", NULL },
+    { 'h', "h", TEXT("this help"), do_help }, { KEY_F1, NULL, NULL, do_help },
+    { 0, TEXT("drag, arrows"), TEXT("turn; in 2-D move"), NULL },
     { KEY_LEFT, NULL, NULL, do_left }, { KEY_RIGHT, NULL, NULL, do_right },
     { KEY_UP, NULL, NULL, do_up }, { KEY_DOWN, NULL, NULL, do_down },
-    { 0, "right drag", "move; also shift and drag", NULL },
-    { 0, "wheel, + -", "nearer, farther", NULL },
+    { 0, TEXT("right drag"), TEXT("move; also shift and drag"), NULL },
+    { 0, TEXT("wheel, + -"), TEXT("nearer, farther"), NULL },
     { '+', NULL, NULL, do_near }, { '=', NULL, NULL, do_near }, { '-', NULL, NULL, do_far },
-    { '0', "0", "first view again", do_home }, { KEY_HOME, NULL, NULL, do_home },
-    { 'f', "f F", "next field, field before", do_field }, { 'F', NULL, NULL, do_field_back },
-    { 'r', "r", "colours from least to most of now", do_range },
-    { 'c', "c", "clip plane: x, y, z, none", do_clip },
-    { '[', "[ ] C", "move it, its other side", do_clip_back }, { ']', NULL, NULL, do_clip_on },
+    { '0', "0", TEXT("first view again"), do_home }, { KEY_HOME, NULL, NULL, do_home },
+    { 'f', "f F", TEXT("next field, field before"), do_field }, { 'F', NULL, NULL, do_field_back },
+    { 'r', "r", TEXT("colours from least to most of now"), do_range },
+    { 'c', "c", TEXT("clip plane: x, y, z, none"), do_clip },
+    { '[', "[ ] C", TEXT("move it, its other side"), do_clip_back }, { ']', NULL, NULL, do_clip_on },
     { 'C', NULL, NULL, do_clip_side },
-    { 'o', "o", "nests, or the scene alone", do_nests },
-    { ' ', "space", "play, or pause a run", do_pause },
-    { 'n', "n", "next output, or one step of a run", do_step },
-    { 'b', "b", "output before", do_back },
-    { '<', "< >", "first and last output", do_first }, { '>', NULL, NULL, do_last },
+    { 'o', "o", TEXT("nests, or the scene alone"), do_nests },
+    { ' ', TEXT("space"), TEXT("play, or pause a run"), do_pause },
+    { 'n', "n", TEXT("next output, or one step of a run"), do_step },
+    { 'b', "b", TEXT("output before"), do_back },
+    { '<', "< >", TEXT("first and last output"), do_first }, { '>', NULL, NULL, do_last },
     { KEY_END, NULL, NULL, do_last },
-    { 'g', "g", "next curves: whole, bodies, none", do_graph },
-    { 0, "click", "read a particle; two: distance", NULL },
-    { 'x', "x", "forget the particles", do_forget },
-    { 's', "s", "screenshot", do_shot },
-    { 'm', "m", "begin and end a movie", toggle_recording },
-    { 'q', "q, Esc", "close", do_close }, { KEY_ESCAPE, NULL, NULL, do_close },
+    { 'g', "g", TEXT("next curves: whole, bodies, none"), do_graph },
+    { 0, TEXT("click"), TEXT("read a particle; two: distance"), NULL },
+    { 'x', "x", TEXT("forget the particles"), do_forget },
+    { 's', "s", TEXT("screenshot"), do_shot },
+    { 'm', "m", TEXT("begin and end a movie"), toggle_recording },
+    { 'q', "q, Esc", TEXT("close"), do_close }, { KEY_ESCAPE, NULL, NULL, do_close },
     { -1, NULL, NULL, NULL },
 };
 

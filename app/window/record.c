@@ -36,7 +36,7 @@ void take_shot(viewer *v)
     char *path = free_name(v, ".png");
     v->wants_shot = 0;
     if (path && write_png(path, v->pixels, v->width, v->height) == 0) viewer_note(v, "%.280s", path);
-    else viewer_note(v, "cannot write %.260s", path ? path : "a screenshot");
+    else viewer_note(v, TEXT("cannot write %.260s"), path ? path : window_text(TEXT("a screenshot")));
     free(path);
 }
 
@@ -54,7 +54,7 @@ void record_picture(viewer *v)
         v->recorded++;
         v->kept = v->painted;
     } else {
-        viewer_note(v, "cannot write %.260s", path ? path : "a picture");
+        viewer_note(v, TEXT("cannot write %.260s"), path ? path : window_text(TEXT("a picture")));
     }
     free(path);
 }
@@ -67,11 +67,11 @@ static void begin(viewer *v)
     v->kept = -1;
     if (!v->recording || asprintf(&frames, "%s/frames", v->recording) < 0) return;
     if (mkdir(v->recording, 0777) != 0 || mkdir(frames, 0777) != 0) {
-        viewer_note(v, "cannot make %.200s: %s", frames, tr(strerror(errno)));
+        viewer_note(v, TEXT("cannot make %.200s: %s"), frames, tr(strerror(errno)));
         free(v->recording);
         v->recording = NULL;
     } else {
-        viewer_note(v, "recording; m ends it");
+        viewer_note(v, TEXT("recording; m ends it"));
     }
     free(frames);
     v->dirty = 1;
@@ -96,12 +96,12 @@ static void end(viewer *v)
     char *movie = free_name(v, ".mp4");
     if (v->recorded == 0) {
         remove_pictures(v);
-        viewer_note(v, "nothing was recorded");
+        viewer_note(v, TEXT("nothing was recorded"));
     } else if (movie && prepare_movie(movie, 0) == 0 && encode_pictures(v->recording, movie, RATE) == 0) {
         remove_pictures(v);
         viewer_note(v, "%.280s", movie);
     } else {
-        viewer_note(v, "no movie: it needs ffmpeg. The pictures are in %.240s", v->recording);
+        viewer_note(v, TEXT("no movie: it needs ffmpeg. The pictures are in %.240s"), v->recording);
     }
     free(movie);
     free(v->recording);

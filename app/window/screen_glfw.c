@@ -1,6 +1,7 @@
 /* A window of GLFW with one picture in it, drawn as a texture by OpenGL 1.1, which every driver has, the
    software renderer of Mesa too. Drawback: pixels cross the bus at each change, 3 MB at 1280 x 720. */
 #include "screen.h"
+#include "../tobiuo/language.h"
 #include <GLFW/glfw3.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -82,7 +83,7 @@ static screen *fail(screen *s, char *why)
 {
     const char *text = NULL;
     glfwGetError(&text);
-    snprintf(why, 200, "%s", text ? text : "no reason is known");
+    snprintf(why, 200, "%s", text ? text : tr("no reason is known"));
     why[strcspn(why, "\n")] = '\0';
     screen_close(s);
     return NULL;

@@ -1,12 +1,13 @@
 /* In a build without GLFW there is no window, only the reason. Drawback: GLFW must be there when the
    program is built, not when it runs. */
 #include "screen.h"
+#include "../tobiuo/language.h"
 #include <stdio.h>
 
 screen *screen_open(int width, int height, const char *title, char *why)
 {
     (void)width, (void)height, (void)title;
-    snprintf(why, 200, "this build has none: install libglfw3-dev and build again");
+    snprintf(why, 200, "%s", tr("this build has none: install libglfw3-dev and build again"));
     return NULL;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "screen.h"
 #include "window.h"
+#include "../tobiuo/language.h"
 #include "../tobiuo/table.h"
 #include <stdio.h>
 
@@ -55,6 +56,9 @@ void viewer_note(viewer *v, const char *format, ...) __attribute__((format(print
 /* Where the time line is; pixels. */
 void time_line_place(const viewer *v, int *x, int *y, int *width, int *height);
 double viewer_end(const viewer *v);
+
+/* window.c: the text in the language of the user, if there are letters for it. */
+const char *window_text(const char *english) __attribute__((format_arg(1)));
 
 /* record.c: pictures and movies of the window. */
 void take_shot(viewer *v);

@@ -3,6 +3,7 @@
    is drawn whole. Drawback: three threads share the cores with the steps of a run. */
 #define _GNU_SOURCE 1
 #include "viewer.h"
+#include "letters.h"
 #include "../tobiuo/app.h"
 #include <math.h>
 #include <stdlib.h>
@@ -77,7 +78,7 @@ static void take_picture(viewer *v)
         v->painting = p;
         v->painted++;
     } else {
-        viewer_note(v, "no picture: %s", p.why);
+        viewer_note(v, TEXT("no picture: %s"), p.why);
         painting_free(&p);
     }
     v->changed = 1;
@@ -191,6 +192,12 @@ static void close_viewer(viewer *v)
     if (v->screen) screen_close(v->screen);
 }
 
+const char *window_text(const char *english)
+{
+    const char *text = tr(english);
+    return letters_have(text) ? text : english;
+}
+
 /* A run that Ctrl-C or SIGTERM stopped takes its window with it. */
 static int is_stopped(const viewer *v)
 {
@@ -201,9 +208,11 @@ int window_show(const window_def *def)
 {
     viewer v = { .def = *def, .factor = 4, .dirty = 1, .changed = 1, .keys = def->keys, .graph_number = 0,
                  .picks = { -1, -1 }, .look = { .clip_axis = -1, .alone = def->alone } };
+    letters_open();
     const int code = open_viewer(&v);
-    if (code == 0) viewer_note(&v, "h: keys");
+    if (code == 0) viewer_note(&v, TEXT("h: keys"));
     while (code == 0 && !v.ends && !is_stopped(&v)) turn(&v);
     close_viewer(&v);
+    letters_close();
     return code;
 }

@@ -109,6 +109,19 @@ cp -r plain 結果
 timeout 60 "$program" view 結果 --size 800x450 --keys "sq" > out.txt 2> err.txt
 check "a path in Japanese" grep -q "結果/window_1.png" err.txt
 
+# The help is Japanese where the system has letters for it, else English.
+shot() { timeout 60 env "${@:2}" "$program" view plain --size 800x450 --keys "hsq" > out.txt 2> err.txt
+         check "$1: nothing on the terminal" test ! -s err.txt
+         mv plain/window_1.png "$1.png"; }
+echo '<fontconfig></fontconfig>' > no_fonts.conf
+shot help_english LC_ALL=C.UTF-8
+shot help_no_font LC_ALL=ja_JP.UTF-8 FONTCONFIG_FILE="$PWD/no_fonts.conf"
+shot help_japanese LC_ALL=ja_JP.UTF-8
+differ $all help_english.png help_no_font.png "help without a Japanese font"
+if ldd "$program" | grep -q freetype && [ -n "$(fc-list :lang=ja 2> /dev/null)" ]; then
+    differ help help_english.png help_japanese.png "help in Japanese"
+fi
+
 # So it is in the window of a run, of outputs that have it; by real keys, when it is made.
 "$program" run splash.json --out live --quiet --window > out.txt 2> err.txt &
 runner=$!
