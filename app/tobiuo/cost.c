@@ -42,11 +42,11 @@ char *size_objection(const tobi_run_size *size, const char *dir)
     if (size->bytes <= fmin(MOST_BYTES, MOST_OF_DISK * left) && size->files <= MOST_FILES) return NULL;
     if (isfinite(left)) snprintf(free_text, sizeof free_text, tr(", and %s are free"), bytes_text(left,
                                                                                                   room));
-    const int length = asprintf(&text, "%lld outputs take about %s in %.7g files%s; make spacing or "
-                                "output.interval larger, output.fields fewer or output.compression zlib, "
-                                "or run with --force", (long long)size->outputs,
+    const int length = asprintf(&text, tr("%lld outputs take about %s in %.7g files%s; make spacing or "
+                                   "output.interval larger, output.fields fewer or output.compression "
+                                   "zlib, or run with --force"), (long long)size->outputs,
                                 bytes_text(size->bytes, bytes), size->files, free_text);
-    return length < 0 ? strdup("out of memory") : text;
+    return length < 0 ? strdup(tr("out of memory")) : text;
 }
 
 enum { MEASURED_STEPS = 100 };

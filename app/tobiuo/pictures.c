@@ -71,9 +71,9 @@ char *list_gaps(const char *dir, const char *view, const pictures *p)
         while (last + 1 < p->end && !is_picture(dir, view, last + 1)) last++;
         if (gaps++ >= MOST) continue;
         fprintf(out, "%s%lld", gaps > 1 ? ", " : "", (long long)k);
-        if (last > k) fprintf(out, " to %lld", (long long)last);
+        if (last > k) fprintf(out, tr(" to %lld"), (long long)last);
     }
-    if (gaps > MOST) fprintf(out, " and %d gaps more", gaps - MOST);
+    if (gaps > MOST) fprintf(out, tr(" and %d gaps more"), gaps - MOST);
     if (fclose(out) == 0) return text;
     free(text);
     return NULL;

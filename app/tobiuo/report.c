@@ -119,7 +119,7 @@ static void build_world(report *r)
     tobi_report *mistakes = NULL;
     char *path = join(r->dir, "resolved.json");
     tobi_status status = r->scene ? tobi_scene_load(path, NULL, &r->loaded, &mistakes, &err) : TOBI_NOT_FOUND;
-    if (!r->scene) snprintf(err.text, sizeof err.text, "there is no whole resolved.json");
+    if (!r->scene) snprintf(err.text, sizeof err.text, "%s", tr("there is no whole resolved.json"));
     if (status == TOBI_OK) tobi_scene_build(r->loaded, &r->world, &err);
     snprintf(r->why, sizeof r->why, "%.*s", (int)sizeof r->why - 1, err.text);
     tobi_report_free(mistakes);

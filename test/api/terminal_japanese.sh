@@ -64,6 +64,7 @@ expect 1 "'camra'という名前はない。もしかしてcamera？" describe c
 "$program" describe scene > japanese.md
 check "the page of scenes stays English" grep -q "^# Scenes" japanese.md
 
+expect 1 "tobiuo: 出力500001回で約" run tank.json --out out --set output.interval=2e-7
 expect 0 "tobiuo: 注意：流体 'water': 密度が1 kg/m3" run tank.json --out out
 says "計算終了：t = 0.1 s"
 expect 1 "out：計算結果がある。何も変えていない" run tank.json --out out
