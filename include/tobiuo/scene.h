@@ -134,8 +134,8 @@ TOBI_API char *tobi_scene_shipped(const char *name);
    "fill", "body", "motion", "output" or "reference"; "history", "bodies" or "probes" are the columns of the
    tables of a run. "scene" is the page of all keys in Markdown (docs/scene.md), "tables" that of all columns
    (docs/tables.md), "schema" a JSON Schema (draft-07) for editors; NULL lists the topics. Any other word is
-   looked for in all keys, fields and columns: "camera", "output.camera". Owned by the caller (free()). NULL
-   if there is nothing of this name. */
+   looked for in all keys, fields and columns: "camera", "output.camera"; if none is called so, in the
+   sentences of keys and columns: "shear". Owned by the caller (free()). NULL if there is nothing of it. */
 TOBI_API char *tobi_scene_describe(const char *topic);
 /* The topic, key, field or column that a misspelt word may mean; owned by the caller (free()), NULL if none
    is near. */

@@ -225,7 +225,7 @@
     P("run_up", "m", "Coordinate, along gravity, of the place on the line where the water ends.") \
     P("distance", "m", "How far that place is from the begin of the line; 0 where it is dry.")
 #define FLOW(P) \
-    P("flow", "m3/s", "Volume per second through the rectangle, positive along its normal.")
+    P("flow", "m3/s", "Discharge: volume per second through the rectangle, positive along its normal.")
 #define VOLUME(P) \
     P("volume", "m3", "Volume of liquid in the box.")
 

@@ -25,10 +25,12 @@ static const tobi_param inlet_rows[] = {
     { .key = "speed", REAL, AT(tobi_inlet_def, speed), RANGE(0, TOBI_SPEED_LIMIT), .unit = "m/s",
       .text = "by flow_rate", .doc = "Mean speed over the patch." },
     { .key = "flow_rate", REAL, AT(tobi_inlet_def, flow_rate), RANGE(0, 1e9), .unit = "m3/s",
-      .text = "by speed", .doc = "Volume per time, instead of a speed; in 2-D per metre of depth." },
+      .text = "by speed",
+      .doc = "Discharge, volume per time, instead of a speed; in 2-D per metre of depth." },
     { .key = "file", TEXT, AT(tobi_inlet_def, file), .unit = "path",
-      .doc = "A CSV file, instead of both: its first line names the columns time (s) and speed (m/s) or "
-             "flow_rate (m3/s). Linear between the rows; before the first and after the last it stays." },
+      .doc = "A CSV file of a hydrograph, instead of both: its first line names the columns time (s) and "
+             "speed (m/s) or flow_rate (m3/s). Linear between the rows; before the first and after the last "
+             "it stays." },
     { .key = "profile", CHOICE("uniform|parabolic", 2), AT(tobi_inlet_def, profile),
       .doc = "How the speed is spread over the patch: evenly, or as of a laminar flow." },
     { .key = "start", REAL, AT(tobi_inlet_def, start), RANGE(0, 1e9), .unit = "s",

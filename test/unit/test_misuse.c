@@ -474,7 +474,7 @@ static void scenes(void **state)
     assert_true(!tobi_scene_reference(NULL, 0) && !tobi_scene_import_table(NULL) &&
                 !tobi_scene_resolved(NULL));
     assert_true(tobi_report_count(NULL) == 0 && !tobi_report_line(NULL, 0) &&
-                !tobi_scene_describe("nothing"));
+                !tobi_scene_describe("nonesuch"));
     tobi_report_free(NULL);
     tobi_scene_free(NULL);
 }

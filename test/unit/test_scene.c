@@ -392,6 +392,9 @@ static void describe_finds_any_key_field_or_column(void **state)
     expect_description("history", "density_error_mean", "orientation_w");
     expect_description("probes", "level", NULL);
     expect_description("tables", "# Tables of a run", NULL);
+    expect_description("shear", "  tractions\n      Write the pressure and the shear", "  interval\n");
+    expect_description("rectangle", "flow: column of probes.csv, unit m3/s", NULL);
+    assert_null(tobi_scene_describe("hea"));
     const char *slips[][2] = { { "camra", "camera" }, { "histroy", "history" }, { "viscocity", "viscosity" },
                                { "dfshp", "dfsph" }, { "vorticty", "vorticity" } };
     for (size_t k = 0; k < sizeof slips/sizeof *slips; k++) {

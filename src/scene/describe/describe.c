@@ -102,7 +102,8 @@ static void list_topics(FILE *out)
     fprintf(out, "%s\n", tr("Topics:"));
     for (int i = 0; (name = topic_at(i, &doc)); i++)
         fprintf(out, "  %-9s %s\n", name, tobi_meaning(doc, room));
-    fprintf(out, "%s\n", tr("Any key, field or column works as well: tobiuo describe camera"));
+    fprintf(out, "%s\n", tr("Any key, field or column works as well, or a word of a sentence: tobiuo "
+                            "describe shear"));
 }
 
 static const tobi_param_table *find_table(const char *topic)

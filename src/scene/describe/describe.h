@@ -10,7 +10,9 @@ const char *tobi_describe_topic(int index);
 /* Prints a key with unit, range, default and sentence; and a key whose value is an object or a list. */
 void tobi_describe_row(FILE *out, const tobi_param *row);
 void tobi_describe_part(FILE *out, const tobi_part *part);
-/* Keys, fields and columns whose path has the words; how many. */
+/* Whether a sentence has the word, whole; capitals do not count. */
+int tobi_describe_says(const char *sentence, const char *word);
+/* Keys, fields and columns whose path has the words, or else whose sentence has them; how many. */
 int tobi_describe_find(FILE *out, const char *word);
 /* Writes the tables that have such a key into text, as "the top level (domain.walls), plane (walls)"; how
    many, 0 also if there are more than three. in: the table that has no such key; if it is of a method, other

@@ -1,5 +1,6 @@
-/* Finds keys of scenes, fields and columns by a part of their path: "camera", "output.camera", "viscosity".
-   Drawback: a word that many places use, such as "name", lists them all. */
+/* Finds keys of scenes, fields and columns by a part of their path: "camera", "output.camera", "viscosity";
+   or, where none has it, by a word of their sentences: "shear", "discharge". Drawback: a word that many
+   places use, such as "name", lists them all. */
 #define _GNU_SOURCE 1
 #include "scene/describe/describe.h"
 #include "scene/describe/manual.h"
@@ -7,6 +8,7 @@
 #include "scene/spelling.h"
 #include "tobiuo/run.h"
 #include "tobiuo/scene.h"
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,11 +24,23 @@ static int find_words(const char *path, const char *part)
     return 0;
 }
 
-static int matches(const tobi_param_table *table, const char *key, const char *word)
+int tobi_describe_says(const char *sentence, const char *word)
 {
-    char path[160];
+    const size_t length = strlen(word);
+    for (const char *p = sentence; length > 0 && (p = strcasestr(p, word)); p++)
+        if ((p == sentence || !isalnum((unsigned char)p[-1])) && !isalnum((unsigned char)p[length])) return 1;
+    return 0;
+}
+
+/* What is looked for, in paths or in sentences. */
+typedef struct query { const char *word; int in_sentences; } query;
+
+static int matches(const tobi_param_table *table, const char *key, const char *doc, const query *q)
+{
+    char path[160], room[TOBI_MEANING];
     snprintf(path, sizeof path, "%s.%s", table->name, key);
-    return find_words(path, word) > 0;
+    return q->in_sentences ? tobi_describe_says(tobi_meaning(doc, room), q->word)
+                           : find_words(path, q->word) > 0;
 }
 
 static void print_head(FILE *out, const tobi_param_table *table, int found, char room[TOBI_MEANING])
@@ -34,18 +48,18 @@ static void print_head(FILE *out, const tobi_param_table *table, int found, char
     fprintf(out, "%s%s: %s\n", found ? "\n" : "", table->name, tobi_meaning(table->doc, room));
 }
 
-static int find_in_table(FILE *out, const tobi_param_table *table, const char *word, int found)
+static int find_in_table(FILE *out, const tobi_param_table *table, const query *q, int found)
 {
     tobi_part part;
     char room[TOBI_MEANING];
     int here = 0;
     for (const tobi_param *row = table->rows; row->key; row++) {
-        if (!matches(table, row->key, word)) continue;
+        if (!matches(table, row->key, row->doc, q)) continue;
         if (here++ == 0) print_head(out, table, found, room);
         tobi_describe_row(out, row);
     }
     for (int i = 0; tobi_part_at(i, &part); i++) {
-        if (strcmp(part.owner, table->name) != 0 || !matches(table, part.key, word)) continue;
+        if (strcmp(part.owner, table->name) != 0 || !matches(table, part.key, part.doc, q)) continue;
         if (here++ == 0) print_head(out, table, found, room);
         tobi_describe_part(out, &part);
     }
@@ -66,20 +80,25 @@ static int find_field(FILE *out, const char *word)
     return 0;
 }
 
-static int find_word(FILE *out, const char *word)
+static int find_word(FILE *out, const char *word, int in_sentences)
 {
+    const query q = { word, in_sentences };
     const tobi_param_table *table;
     int found = 0;
-    for (int i = 0; (table = tobi_describe_table_at(i)); i++) found += find_in_table(out, table, word, found);
-    found += find_field(out, word);
-    return found + tobi_tables_find(out, word);
+    for (int i = 0; (table = tobi_describe_table_at(i)); i++) found += find_in_table(out, table, &q, found);
+    if (!in_sentences) found += find_field(out, word);
+    return found + tobi_tables_find(out, word, in_sentences);
 }
 
 int tobi_describe_find(FILE *out, const char *word)
 {
     char other[TOBI_SPELLING];
-    const int found = find_word(out, word);
-    return found || !tobi_spelling_other(word, other) ? found : find_word(out, other);
+    const char *spellings[] = { word, tobi_spelling_other(word, other) ? other : NULL };
+    int found = 0;
+    for (int in_sentences = 0; in_sentences < 2; in_sentences++)
+        for (int k = 0; k < 2 && !found; k++)
+            if (spellings[k]) found = find_word(out, spellings[k], in_sentences);
+    return found;
 }
 
 /* --- where a key belongs ------------------------------------------------------------------ */

@@ -17,7 +17,7 @@ char *tobi_scene_schema(void);
 char *tobi_tables_manual(void);
 /* The columns of the table that a topic ("history") means; how many tables. */
 int tobi_tables_describe(FILE *out, const char *topic);
-/* The columns of this name; how many. */
-int tobi_tables_find(FILE *out, const char *name);
+/* The columns of this name, or whose sentence has it; how many. */
+int tobi_tables_find(FILE *out, const char *name, int in_sentences);
 /* Topics of tables with their sentence; NULL past the end. */
 const char *tobi_tables_topic(int index, const char **doc);

@@ -2,6 +2,7 @@
    write them (record/columns.h). Drawback: only what no list knows, such as when a row is written,
    stands here and must be kept true by hand. */
 #define _GNU_SOURCE 1
+#include "scene/describe/describe.h"
 #include "scene/describe/manual.h"
 #include "tobiuo/run.h"
 #include <stdio.h>
@@ -226,14 +227,14 @@ int tobi_tables_describe(FILE *out, const char *topic)
     return found;
 }
 
-int tobi_tables_find(FILE *out, const char *name)
+int tobi_tables_find(FILE *out, const char *name, int in_sentences)
 {
     const tobi_column *c;
     int found = 0;
     for (int k = 0; k < TABLES; k++)
         for (int i = 0; (c = tobi_run_column(tables[k].table, i)); i++) {
-            if (strcmp(c->name, name) != 0) continue;
-            fprintf(out, tr("%s: column of %s, unit %s\n      %s\n"), name, tables[k].file, c->unit,
+            if (in_sentences ? !tobi_describe_says(tr(c->doc), name) : strcmp(c->name, name) != 0) continue;
+            fprintf(out, tr("%s: column of %s, unit %s\n      %s\n"), c->name, tables[k].file, c->unit,
                     tr(find_meaning(tables[k].table, i)));
             found++;
         }
