@@ -1,7 +1,9 @@
 /* What a column of a table comes to: its mean over time, its extremes, its end. Reports and sweeps tell them.
    Drawback: an extreme between two rows is not seen. */
 #include "digest.h"
+#include "app.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 int digest_belongs(const table *t, const char *name, size_t row)
@@ -40,4 +42,21 @@ digest digest_column(const table *t, const char *name, int first, int second, do
     }
     d.mean = span > 0 ? sum/span : d.last;
     return d;
+}
+
+void digest_add_power(table *t)
+{
+    const int work = table_column(t, "motion_work"), name = table_column(t, "name");
+    if (work < 0 || name < 0) return;
+    const int time = find_time(t);
+    double *power = calloc(t->rows + 1, sizeof *power);
+    if (!power) exit(complain("out of memory"));
+    size_t bodies = 1;                      /* rows of an output, the bodies in the same order in each */
+    while (bodies < t->rows && !digest_belongs(t, t->cells[name], bodies)) bodies++;
+    for (size_t i = bodies; i < t->rows; i++) {
+        const double span = table_number(t, i, time) - table_number(t, i - bodies, time);
+        if (span > 0) power[i] = (table_number(t, i, work) - table_number(t, i - bodies, work))/span;
+    }
+    table_add_column(t, "mean_motion_power", power);
+    free(power);
 }

@@ -10,3 +10,6 @@ typedef struct digest { double last, mean, low, high, low_time, high_time; size_
 digest digest_column(const table *t, const char *name, int first, int second, double from);
 /* Whether a row is of that name. */
 int digest_belongs(const table *t, const char *name, size_t row);
+/* Adds mean_motion_power to a table of bodies: what the motion of a body gave since its last row, W. Nothing
+   where there is no motion_work. */
+void digest_add_power(table *t);

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "plot.h"
 #include "app.h"
+#include "digest.h"
 #include "table.h"
 #include <errno.h>
 #include <math.h>
@@ -370,6 +371,7 @@ static int read_table(table *t, const char *dir, const char *name, const char *k
     if (asprintf(&path, "%s/%s", dir, name) < 0) return complain("out of memory");
     int code = table_read(t, path) == 0 ? 0 : EXIT_ERROR;
     table_strip_units(t);
+    digest_add_power(t);
     if (code == 0 && (table_column(t, "time") < 0 || table_column(t, key) < 0))
         code = complain("%s has no column \"%s\": it is not a table of a run", path,
                         table_column(t, "time") < 0 ? "time" : key);

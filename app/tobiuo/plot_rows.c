@@ -117,6 +117,9 @@ const picture_row plot_body[] = {
     { "torque", TEXT("Torque of the particles about the centre of mass of %s"), 0, {
         PARTS("torque", "x", "N m", { 0 }), PARTS("torque", "y", "N m", { 0 }),
         PARTS("torque", "z", "N m", { 0 }) } },
+    { "power", TEXT("Power of the motion of %s"), 1, {
+        { TEXT("given to fluids and solids"), "W", 0, 1, 0, 0, 1,
+          { { TEXT("mean"), "mean_motion_power", NULL, CURVE_LINE, 7, "mean_motion_power", NULL } } } } },
     { "contact_force", TEXT("Force of bodies and sides on %s"), 1, {
         TOUCH("force", "x", "N"), TOUCH("force", "y", "N"), TOUCH("force", "z", "N") } },
     { "contact_torque", TEXT("Torque of bodies and sides about the centre of mass of %s"), 1, {

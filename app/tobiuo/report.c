@@ -2,6 +2,7 @@
    (a program, a file) is said in its place. Drawback: pictures are in it at one size only. */
 #define _GNU_SOURCE
 #include "report.h"
+#include "digest.h"
 #include "plot.h"
 #include <errno.h>
 #include <stdarg.h>
@@ -107,6 +108,7 @@ static int read_one(table *t, const char *dir, const char *name)
     const int there = access(path, F_OK) == 0, code = there && table_read(t, path) != 0 ? EXIT_ERROR : 0;
     free(path);
     table_strip_units(t);
+    digest_add_power(t);
     if (code == 0 && there && table_column(t, "time") < 0)
         return complain("%s has no column \"time\": it is not a table of a run", t->path);
     return code;

@@ -43,6 +43,16 @@ static int is_shown(const table *t, const char *name, const digest *d)
     return d->rows > 0 && !(d->low == 0 && d->high == 0) && table_column(t, mean) < 0;
 }
 
+static void write_power(const report *r, const part *p)
+{
+    static const tobi_column power = { .name = "mean_motion_power", .unit = "W",
+        .doc = TEXT("Given by its motion to fluids and solids, mean since the last output.") };
+    const int column = table_column(p->table, power.name);
+    if (column < 0) return;
+    const digest d = digest_column(p->table, p->name, column, -1, p->from);
+    if (is_shown(p->table, power.name, &d)) write_row(r, &power, power.doc, &d);
+}
+
 /* All columns of a part that the library knows, prefixed in the table as probes are. */
 static void write_columns(const report *r, const part *p, tobi_table list, const char *prefix,
                           const char *title)
@@ -63,6 +73,7 @@ static void write_columns(const report *r, const part *p, tobi_table list, const
         write_row(r, c, doc == said ? "" : doc, &d);
         said = doc;
     }
+    if (begun && list == TOBI_TABLE_BODIES) write_power(r, p);
     if (begun) fputs("</table></div>\n", r->file);
 }
 

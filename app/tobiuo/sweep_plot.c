@@ -49,6 +49,7 @@ static int find_column(const sweep *s, int run, const char *column, found *one)
         *one = (found){ 0 };
         if (access(path, F_OK) != 0 || table_read(&one->table, path) != 0) one->table = (table){ 0 };
         table_strip_units(&one->table);
+        digest_add_power(&one->table);
         there = look_into(one, slash ? slash + 1 : column);
         if (!there) table_free(&one->table);
         free(path);

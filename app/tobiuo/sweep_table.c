@@ -41,6 +41,7 @@ table *sweep_read_all(const sweep *s, const char *file, int units)
         char *name = sweep_name(s, run), *path = sweep_path(s, "%s/%s", name, file);
         if (access(path, F_OK) == 0) table_read(&list[run], path);
         if (!units) table_strip_units(&list[run]);
+        digest_add_power(&list[run]);
         free(path);
         free(name);
     }
@@ -72,12 +73,15 @@ typedef struct measures {
     int count;
 } measures;
 
-/* force_x of a body is the sum that `tobiuo plot` draws: pressure and friction. */
+/* force_x and torque_x of a body are the sums that `tobiuo plot` draws: pressure and friction. */
 sweep_reading sweep_find_reading(const table *t, const char *column)
 {
     char part[2][64];
     sweep_reading r = { t->columns ? table_column(t, column) : -1, -1 };
-    if (r.first >= 0 || !t->columns || strncmp(column, "force_", 6) != 0) return r;
+    if (r.first >= 0 || !t->columns) return r;
+    if (strcmp(column, "motion_power") == 0)
+        return (sweep_reading){ table_column(t, "mean_motion_power"), -1 };
+    if (strncmp(column, "force_", 6) != 0 && strncmp(column, "torque_", 7) != 0) return r;
     snprintf(part[0], sizeof part[0], "mean_pressure_%s", column);
     snprintf(part[1], sizeof part[1], "mean_viscous_%s", column);
     r = (sweep_reading){ table_column(t, part[0]), table_column(t, part[1]) };
@@ -107,7 +111,8 @@ static void add_measure(measures *m, int file, const char *body, const char *col
 static void find_body_measures(const sweep *s, measures *m, int file)
 {
     static const char *const of_body[] = { "position_x", "position_y", "position_z", "angle", "roll", "pitch",
-                                           "yaw", "force_x", "force_y", "force_z" };
+                                           "yaw", "force_x", "force_y", "force_z", "torque_x",
+                                           "torque_y", "torque_z", "motion_power" };
     const table *t = sweep_first_table(m->of[file], s->runs);
     const int name = t ? table_column(t, "name") : -1;
     for (size_t i = 0; name >= 0 && i < t->rows; i++) {

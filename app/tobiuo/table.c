@@ -152,6 +152,7 @@ void table_free(table *t)
     free(t->names);
     free(t->cells);
     free(t->text);
+    free(t->added);
     *t = (table){ 0 };
 }
 
@@ -160,6 +161,23 @@ int table_column(const table *t, const char *name)
     for (int k = 0; k < t->columns; k++)
         if (strcmp(t->names[k], name) == 0) return k;
     return -1;
+}
+
+void table_add_column(table *t, const char *name, const double *value)
+{
+    enum { WIDTH = 32 };
+    const size_t old = (size_t)t->columns, columns = old + 1;
+    char **cells = calloc(t->rows*columns + 1, sizeof *cells);
+    t->added = malloc(t->rows*WIDTH + 1);
+    if (!cells || !t->added || t->columns == COLUMN_LIMIT) exit(complain("out of memory"));
+    for (size_t i = 0; i < t->rows; i++) {
+        memcpy(cells + i*columns, t->cells + i*old, old*sizeof *cells);
+        cells[i*columns + old] = t->added + i*WIDTH;
+        snprintf(t->added + i*WIDTH, WIDTH, "%.9g", value[i]);
+    }
+    free(t->cells);
+    t->cells = cells;
+    t->names[t->columns++] = (char *)name;
 }
 
 double table_number(const table *t, size_t row, int column)

@@ -14,11 +14,14 @@ typedef struct table {
     char **names;            /* one per column                                          */
     char **cells;            /* [row*columns + column]; "" where a row is too short     */
     char *text;              /* what names and cells point into                         */
+    char *added;             /* what the cells of an added column point into            */
 } table;
 
 /* Reads the file. 0; or -1 after a message on stderr, and then t is empty. */
 int table_read(table *t, const char *path);
 void table_free(table *t);
+/* A column more, a number a row; once per table. name outlives the table. */
+void table_add_column(table *t, const char *name, const double *value);
 /* Names without their units: "P1_pressure [Pa]" becomes "P1_pressure". */
 void table_strip_units(table *t);
 /* -1 if there is no such column. */

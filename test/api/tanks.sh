@@ -182,6 +182,28 @@ high, low = max(p for _, p in points), min(p for _, p in points)
 for due, word in ((mean, "mean"), (high, "max"), (low, "min")):
     if not abs(float(row[word + " wall_pressure [Pa]"]) - due) <= 1e-5*abs(due): raise SystemExit(word)
 END
+cat > stir.json <<'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [0.4, 0.2] }, "spacing": 0.02, "end_time": 0.05,
+  "fluids": [ { "name": "oil", "viscosity": 0.1, "fill": [ { "box": { "min": [0, 0], "max": [0.4, 0.16] } } ] } ],
+  "bodies": [ { "name": "post", "box": { "min": [0.3, 0], "max": [0.34, 0.2] } },
+              { "name": "stirrer", "box": { "min": [0.1, 0.08], "max": [0.2, 0.12] },
+                "motion": { "rotation": { "centre": [0.15, 0.1], "rate": 90 } } } ],
+  "output": { "interval": 0.01 } }
+END
+expect 0 "" sweep stir.json --set bodies.stirrer.motion.rotation.rate=90,180 --plot stirrer_motion_power --out stir
+check "torque and power of a stirrer, none of a post" $python - <<'END'
+import csv
+for run in csv.DictReader(open("stir/sweep.csv")):
+    rows = list(csv.DictReader(open(f"stir/rate={run['rate']}/bodies.csv")))
+    rows = [row for row in rows if row["name"] == "stirrer"]
+    if not float(rows[-1]["motion_work"]) > 0: raise SystemExit("no work")
+    power = float(rows[-1]["motion_work"])/float(rows[-1]["time"])
+    if not abs(float(run["mean stirrer_motion_power [W per m]"])/power - 1) < 1e-5: raise SystemExit("power")
+    due = [sum(float(row[f"mean_{part}_torque_z"]) for part in ("pressure", "viscous")) for row in rows[1:]]
+    if not abs(float(run["mean stirrer_torque_z [N m per m]"])/(sum(due)/5) - 1) < 1e-5: raise SystemExit("torque")
+    if "mean post_motion_power [W per m]" in run: raise SystemExit("post")
+END
+check "a picture of the power" grep -q "stirrer_motion_power, W per m" stir/sweep.svg
 expect 1 "--from 9: no run has values from this time on" "${sweep[@]}" --table --from 9
 expect 2 "--from: 'x' is not a number from 0 on" "${sweep[@]}" --from x
 check "a row for each" test "$(rows s/sweep.csv)" = 5
