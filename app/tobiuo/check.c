@@ -148,14 +148,17 @@ static void try_steps(const tobi_world_def *d, tobi_world *world, int starts, tr
     t->least = t->least > 0.0 ? fmin(t->least, t->step) : t->step;
 }
 
+#define ROUNDING 1e-9                /* N, of the places of a stiff line's ends */
+
 /* Lines as they start. */
 static void print_lines(const tobi_world *world, int dimension, const trial *t)
 {
     const char *name;
     for (int k = 0; k < LINES_LISTED && (name = tobi_world_line(world, k, NULL)); k++) {
+        const double tension = fabs(t->line[k].tension) < ROUNDING ? 0 : t->line[k].tension;
         print_label(tr("line"));
         printf(tr("%s: %.4g m from end to end, tension %.4g %s at the start\n"), name, t->line[k].distance,
-               t->line[k].tension, dimension == 2 ? "N per m" : "N");
+               tension, dimension == 2 ? "N per m" : "N");
     }
 }
 

@@ -43,6 +43,9 @@ noted 'chain: 0.3606 m from end to end, tension 15.19 N per m at the start' line
 noted "line 'chain': is 0.3 m long, and its ends are 0.3606 m apart: it starts taut, with" lines.chain.length=0.3
 noted "line 'spring': 'point' is 0.4 m away from body 'buoy', which is 0.2 m across" "lines.spring.point=[0,0.3]"
 noted "line 'spring': its stiffness, 1e+10 N/m, allows steps of" lines.spring.stiffness=1e10
+expect 0 "" check buoy.json --set 'domain.min=[-0.3,-0.1]' --set lines.spring.stiffness=50000
+check "a spring without force has 0 N, not what rounding leaves" \
+    grep -qF 'spring: 0.4 m from end to end, tension 0 N per m at the start' out.txt
 expect 0 "" check buoy.json
 check "nothing is said of others" test "$(grep -c "^note.*line '" out.txt)" = 0
 expect 0 "" describe lines
