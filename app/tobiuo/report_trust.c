@@ -279,6 +279,22 @@ static gaps look_at_fills(const report *r)
     return g;
 }
 
+/* A body that a motion moves and that liquid sticks to, in a domain with a free surface: there dfsph has the
+   support that the scene says. */
+static int is_sheared(const report *r)
+{
+    const json_t *bodies = report_value(r, "bodies"), *body;
+    const int share = table_column(&r->history, "surface_share");
+    int rubs = 0, open = 0;
+    for (size_t k = 0; (body = json_array_get(bodies, k)); k++) {
+        const char *friction = json_string_value(json_object_get(body, "friction"));
+        rubs |= friction && strcmp(friction, "no-slip") == 0 && json_object_get(body, "motion");
+    }
+    for (size_t i = 0; share >= 0 && i < r->history.rows; i++)
+        open |= table_number(&r->history, i, share) > 0;
+    return rubs && open;
+}
+
 static void warn_of_liquids(const report *r)
 {
     const json_t *support = report_value(r, "dfsph.support");
@@ -287,6 +303,11 @@ static void warn_of_liquids(const report *r)
         say(r, LOOK, tr("waves"),
             tr("Waves are 1 to 2 %% too fast. Set dfsph.support to 3 where the period counts, "
                "or use isph."));
+    if (strcmp(r->method, "dfsph") == 0 && is_sheared(r) &&
+        !(json_is_number(support) && json_number_value(support) >= 2.5))
+        say(r, LOOK, tr("friction"),
+            tr("Where liquid is sheared beside a no-slip body, its friction and torque come out a third too "
+               "large or more. Set dfsph.support to 2.5 or more, or use isph."));
     if (strcmp(r->method, "isph") != 0 && json_array_size(report_value(r, "bodies")) > 0)
         say(r, LOOK, tr("forces"),
             tr("Forces of single steps scatter. Use the columns mean_... of bodies.csv; with "

@@ -40,6 +40,21 @@ END
 # says FILE TEXT: the page's text contains it
 says() { grep -qF -- "$2" <(sed 's/&amp;/\&/g; s/&lt;/</g; s/&gt;/>/g; s/&quot;/"/g' "$1"); }
 
+# --- friction ---
+cat > stir.json <<'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [0.4, 0.3] }, "spacing": 0.02, "end_time": 0.02,
+  "fluids": [ { "name": "oil", "viscosity": 0.1, "fill": [ { "box": { "min": [0, 0], "max": [0.4, 0.2] } } ] } ],
+  "bodies": [ { "name": "gear", "box": { "min": [0.1, 0.08], "max": [0.2, 0.12] }, "friction": "no-slip",
+                "motion": { "rotation": { "centre": [0.15, 0.1], "rate": 90 } } } ],
+  "output": { "interval": 0.01 } }
+END
+for support in 2 2.5; do
+    expect 0 "" run stir.json --set dfsph.support=$support --out stir$support --quiet
+    PATH=/nonexistent "$program" report stir$support > out.txt 2> err.txt
+done
+check "friction at a support of 2" says stir2/report.html "Set dfsph.support to 2.5 or more, or use isph."
+check "none at 2.5" test "$(grep -c 'Set dfsph.support to 2.5' stir2.5/report.html)" = 0
+
 # --- energy from nothing ---
 cat > dam.json <<'END'
 { "dimension": 2, "domain": { "min": [0, 0], "max": [1, 1] }, "spacing": 0.04, "end_time": 0.5, "gravity": [0, -9.81],
