@@ -205,7 +205,7 @@ static void print_scene(const tobi_scene *scene, const tobi_world *world, const 
         printf("%s\n", note);
     }
     if (tobi_scene_import_table(scene))
-        printf(tr("\nA scene of %s. What became of its keys:\n\n%s\n"), tobi_scene_import_program(scene),
+        printf(tr("\nA scene of %s. What became of its keys:\n\n%s\n"), tr(tobi_scene_import_program(scene)),
                tobi_scene_import_table(scene));
 }
 

@@ -178,7 +178,7 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     char *dir = results_path(scene, o->out);
     if (tobi_scene_import_table(scene) && !o->quiet)
         printf(tr("a scene of %s; \"tobiuo check\" lists what became of each of its keys\n"),
-               tobi_scene_import_program(scene));
+               tr(tobi_scene_import_program(scene)));
     int code = dir ? check_size(scene, world, nests, o, dir, &size) : complain("out of memory");
     if (code == 0 && o->surface && tobi_scene_world_def(scene)->dimension != 3)
         code = complain("--surface: a run in 2-D has no surface");

@@ -319,7 +319,7 @@ static tobi_status parse_source(tobi_scene *scene, tobi_source *source,
     else if (tank)
         status = tobi_import_translate_tank(source, &scene->texts, scene->directory, &scene->import_table,
                                             &scene->object_files);
-    scene->import_program = tank ? "the tank program" : "the Taichi program";
+    scene->import_program = tank ? TR("the tank program") : TR("the Taichi program");
     scene->root = json_incref(source->root);
     if (status == TOBI_OK) TOBI_TRY(tobi_override_apply(source, overrides, err));
     if (status == TOBI_OK) status = read_scene(scene, source);

@@ -20,6 +20,9 @@ REQUIRED = re.compile(r'\.required = true,[^{}]*?\.doc\s*=\s*("(?:[^"\\]|\\.)*"(
 OPTION = re.compile(r'\{\s*"[a-z]+",\s*[^,{}]+,\s*(?:NULL|"(?:[^"\\]|\\.)*"),\s*0,\s*("(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)')
 COMMAND = re.compile(r'\{ "[a-z]+", "[^"]*", ("(?:[^"\\]|\\.)*"),\s+tobiuo_')
 COMMAND_DOC = re.compile(r'\.doc\s*=\s*("(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)')
+OF_OLD_KEYS = re.compile(r'(?:SAY\(|\.absent = |'
+                         r'FISH\("\w+", \w+, "\w+", |FISH3\("\w+", \w+, |tobi_import_remark\(\w+, [^,]*, )'
+                         r'\s*("(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)')
 STAGE = re.compile(r"tobi_stage_end\(([^;]*);")
 PIECE = re.compile(r'"((?:[^"\\]|\\.)*)"')
 CONVERSION = re.compile(r"%(?P<place>\d+\$)?(?P<as>[-+#0]*(?:\*|\d+)?(?:\.(?:\*|\d+))?(?:hh|h|ll|l|z|j|t)?[diouxXeEfgGcsp%])")
@@ -62,6 +65,14 @@ def required_docs(root):
             yield str(path.relative_to(root)), literal(found.group(1))
 
 
+def import_texts(root):
+    """What the tables of old programs' keys say."""
+    for path in sorted((root / "src/scene/import").glob("*.c")):
+        text = path.read_text(encoding="utf-8").replace("\\\n", "\n")
+        for found in OF_OLD_KEYS.finditer(text):
+            yield str(path.relative_to(root)), literal(found.group(1))
+
+
 def check_messages():
     sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "tools"))
     import check_messages as tool
@@ -73,6 +84,7 @@ def library_texts(root):
     found = [(path, text) for text, path, _ in check_messages().messages(root)]
     found += [(path.removeprefix(f"{root}/"), text) for text, path in marked_texts(root / "src")]
     found += required_docs(root)
+    found += import_texts(root)
     for path, text in sorted(found, key=lambda both: both[0].split(":")[0]):
         if re.search("[A-Za-z]{2}", CONVERSION.sub("", text)):
             yield text, path

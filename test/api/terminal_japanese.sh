@@ -52,6 +52,18 @@ says "my_dam/scene.jsonにdam_breakのシーンを書いた。計算するには
 check "its comments are Japanese" test "$(grep '//' my_dam/scene.json | grep -cE '壁|単位')" -ge 2
 expect 1 "水が水槽より高い" new dam_break high --water-height 3
 
+old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
+for scene in rigid_blocks.json falling_box.json blocks_y_up.json fish.json parameters.py; do
+    expect 0 "" import "$old/$scene" --out old.json --force
+    check "each remark on $scene has its Japanese" test -z "$(grep '^    ' out.txt | LC_ALL=C grep -v $'[\343-\351]')"
+    check "no English in the table of $scene" test -z "$(grep -E 'nothing$|not given' out.txt)"
+    check "the comments of $scene are Japanese" grep -q "から変換した。キーの変換先：" old.json
+done
+says "ファイルではなくプログラムにあった値：ヤング率1e6 Pa"
+expect 0 "" check "$old/rigid_blocks.json"
+says "Taichi版のシーン。キーの変換先："
+expect 0 "" check old.json
+
 expect 0 "" describe
 check "each topic has its Japanese" test "$(grep -c '^  [a-z]' out.txt)" = \
     "$(grep '^  [a-z]' out.txt | grep -cE 'の|る|用|列')"

@@ -2,6 +2,7 @@
    its numbers become in a native scene. Numbers that stood in the program itself are told below the
    table. */
 #define _GNU_SOURCE 1
+#include "base/language.h"
 #include "scene/import/import.h"
 #include "tobiuo/scene.h"
 #include "geom/massprops.h"
@@ -222,14 +223,14 @@ static void note(tobi_import *im, json_t *apple, json_t *knife, const tobi_place
     json_decref(plain);
 }
 
-static const char closing[] =
+static const char closing[] = TR(
     "Not in the file but in the program: Young's modulus 1e6 Pa, Poisson's ratio 0.3, the corotated model\n"
     "(solids[0]). There the stiffness was taken times 0.3, in some versions times the size of the box, and\n"
     "stress and mass were 8 times too large: set solids[0].youngs_modulus to what the apple has, 3e6 Pa.\n"
     "The knife presses down with 600 N/s times the time until its origin is at z = 0.1 m, then slides\n"
     "along -y with a tenth of that force up to 1 m/s (bodies[0].control), as far as the side of the domain.\n"
     "bodies[0].edge_resistance = 250 J/m2 is that of apple: there was none, the apple parted where the\n"
-    "grid failed.\n";
+    "grid failed.\n");
 
 tobi_status tobi_import_translate_cut(tobi_source *source, tobi_texts *texts, const char *directory,
                                       char **table)

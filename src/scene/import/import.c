@@ -1,5 +1,6 @@
 /* Translating scenes of the Taichi program: what every key means, and the way from file to file. */
 #define _GNU_SOURCE 1
+#include "base/language.h"
 #include "scene/import/import.h"
 #include "tobiuo/scene.h"
 #include "scene/write.h"
@@ -103,8 +104,8 @@ static const tobi_old_key fluid_block_keys[] = {
 };
 
 /* Of bodies that are not dynamic; the remarks about others are in objects.c. */
-static const char *const dynamic_remark = "fixed, or moved by its motion";
-static const char *const still_remark = "a body that is not dynamic never moved by it, and does not now";
+static const char *const dynamic_remark = TR("fixed, or moved by its motion");
+static const char *const still_remark = TR("a body that is not dynamic never moved by it, and does not now");
 
 static const tobi_old_key rigid_block_keys[] = {
     { K("objectId"), B(object), INT(0, 1000000), BECOMES(".name"), SAY("a number became a name") },
@@ -396,8 +397,8 @@ tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const 
                                   char **table, json_t **stand_ins)
 {
     tobi_import im = { .source = source, .binder = { source, texts, directory, 3 }, .closing =
-        "The water has its whole mass: the old program placed 0.8 of it, and the level sank.\n"
-        "Walls and bodies are slip, as they were; water starts where the scene says.\n" };
+        TR("The water has its whole mass: the old program placed 0.8 of it, and the level sank.\n"
+           "Walls and bodies are slip, as they were; water starts where the scene says.\n") };
     *table = NULL;
     *stand_ins = im.stand_ins = json_object();
     im.native = json_object();

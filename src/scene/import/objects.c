@@ -1,5 +1,6 @@
 /* Translating the objects of a Taichi scene: blocks of water, blocks and meshes of bodies, the fish. */
 #define _GNU_SOURCE 1
+#include "base/language.h"
 #include "scene/import/import.h"
 #include "scene/import/tank.h"
 #include "tobiuo/scene.h"
@@ -128,7 +129,7 @@ static void tell_free(tobi_import *im, int has_density, int has_velocity)
 {
     tobi_import_remark(im, "isDynamic", "moved by gravity, the water and what it touches: there "
                        "restitution is 0 and friction_coefficient 0.5, unless the scene gives others%s",
-                       has_density ? "" : "; its density is not given, 1000 kg/m3 is taken");
+                       has_density ? "" : tr("; its density is not given, 1000 kg/m3 is taken"));
     if (has_velocity) tobi_import_remark(im, "velocity", "of the centre of mass at the start");
 }
 
@@ -314,8 +315,8 @@ static char *choose_mesh(tobi_import *im, const char *given, int fish, const cha
     char *file = tobi_import_find_mesh(im, given);
     *remark = NULL;
     if (!file && !im->no_memory && fish && (file = tobi_scene_shipped(TOBI_STAND_IN)))
-        *remark = "there is no such file, so the fish that comes with Tobiuo is taken: 0.2 m long, "
-                  "0.2 m from tip to tip, as in the scene that these keys come from";
+        *remark = TR("there is no such file, so the fish that comes with Tobiuo is taken: 0.2 m long, "
+                     "0.2 m from tip to tip, as in the scene that these keys come from");
     return file;
 }
 
@@ -363,7 +364,7 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
     im->no_memory |= json_array_append_new(bodies, body) != 0;
     tobi_import_note(im, section, object, place, native, "");
     if (b.dynamic) tell_free(im, tobi_import_has(section, given, "density"), has_velocity);
-    if (remark) tobi_import_remark(im, "geometryFile", "%s", remark);
+    if (remark) tobi_import_remark(im, "geometryFile", "%s", tr(remark));
     if (fish) tobi_import_remark(im, "pitchAngle", "nose up. The wings fold by 72 degrees, as the old "
                                  "formula did; motion.params.lagAngle changes it");
     free(mesh);

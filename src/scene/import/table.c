@@ -1,5 +1,6 @@
 /* What became of each key of an old scene: collected while it is translated, written as a table. */
 #define _GNU_SOURCE 1
+#include "base/language.h"
 #include "scene/import/import.h"
 #include <stdarg.h>
 #include <stdio.h>
@@ -46,10 +47,10 @@ void tobi_import_note_key(tobi_import *im, const tobi_old_key *key, json_t *valu
     if (!row) return;
     const char *remark = value ? key->param.doc : key->absent;
     row->from = strdup(path);
-    row->value = value ? value_text(value, key->param.unit) : strdup("(not given)");
+    row->value = value ? value_text(value, key->param.unit) : strdup(tr("(not given)"));
     row->path = native ? strdup(native) : NULL;
     row->unit = key->unit ? key->unit : key->param.unit;
-    row->remark = strdup(remark ? remark : "");
+    row->remark = strdup(remark ? tr(remark) : "");
     im->no_memory |= !row->from || !row->value || !row->remark || (native && !row->path);
     if (value && native) im->no_memory |= tobi_source_add_origin(im->source, native, &at) != TOBI_OK;
 }
@@ -94,7 +95,7 @@ void tobi_import_remark(tobi_import *im, const char *key, const char *format, ..
     char *remark = NULL;
     va_list args;
     va_start(args, format);
-    int length = row ? vasprintf(&remark, format, args) : 0;
+    int length = row ? vasprintf(&remark, tr(format), args) : 0;
     va_end(args);
     im->no_memory |= length < 0;
     if (!row || length < 0) return;
@@ -122,17 +123,33 @@ static json_t *find_value(json_t *node, const char *path)
     return node;
 }
 
-static int limit(size_t length, int most) { return length > (size_t)most ? most : (int)length; }
+static int limit(int length, int most) { return length > most ? most : length; }
+
+/* Of a terminal; letters of Japanese take two. */
+static int columns(const char *text)
+{
+    int count = 0;
+    for (; *text; text++) {
+        const unsigned char c = (unsigned char)*text;
+        count += c >= 0xe3 ? 2 : c < 0x80 || c >= 0xc0;
+    }
+    return count;
+}
 
 /* 0 without memory. */
 static int write_row(FILE *out, const tobi_import *im, const tobi_old_row *row, const int width[2])
 {
     json_t *value = row->path ? find_value(im->native, row->path) : NULL;
     char *text = value ? value_text(value, json_is_string(value) ? NULL : row->unit) : NULL;
-    fprintf(out, "%-*s  %-*s  -> ", width[0], row->from, width[1], row->value);
+    for (int k = 0; k < 2; k++) {
+        const char *cell = k == 0 ? row->from : row->value;
+        const int blanks = width[k] - columns(cell);
+        fprintf(out, "%s%*s  ", cell, blanks > 0 ? blanks : 0, "");
+    }
+    fprintf(out, "-> ");
     if (row->paths) fprintf(out, "%s\n", row->paths);
     else if (text) fprintf(out, "%s = %s\n", row->path, text);
-    else fprintf(out, "nothing\n");
+    else fprintf(out, "%s\n", tr("nothing"));
     if (row->remark[0]) fprintf(out, "    %s\n", row->remark);
     free(text);
     return !value || text;
@@ -146,13 +163,14 @@ static char *write_table(const tobi_import *im)
     FILE *out = open_memstream(&text, &size);
     if (!out) return NULL;
     for (int i = 0; i < im->row_count; i++) {
-        int from = limit(strlen(im->rows[i].from), 44), value = limit(strlen(im->rows[i].value), 24);
+        const int from = limit(columns(im->rows[i].from), 44);
+        const int value = limit(columns(im->rows[i].value), 24);
         if (from > width[0]) width[0] = from;
         if (value > width[1]) width[1] = value;
     }
     int whole = 1;
     for (int i = 0; i < im->row_count; i++) whole &= write_row(out, im, &im->rows[i], width);
-    whole &= fputs(im->closing, out) >= 0 && !ferror(out);      /* the memory may be too small in between */
+    whole &= fputs(tr(im->closing), out) >= 0 && !ferror(out);     /* memory may be too small in between */
     whole &= fclose(out) == 0;
     if (whole) return text;
     free(text);

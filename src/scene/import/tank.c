@@ -2,6 +2,7 @@
    scene. The first object is the tank; where its hollow is a box, the domain is that box, or else the tank is
    a body in the box around all meshes. Drawback: each mesh is read here and once more by the world. */
 #define _GNU_SOURCE 1
+#include "base/language.h"
 #include "scene/import/tank.h"
 #include "base/plain.h"
 #include "tobiuo/scene.h"
@@ -74,7 +75,8 @@ static void note_others(tobi_import *im, const tobi_old_section *section, json_t
         tobi_place at = { &root, key, 0 };
         if (near) tobi_source_mistake_at_key(im->source, &at, "unknown key; did you mean \"%s\"?", near);
         const tobi_old_key row = {
-            .param.key = key, .param.doc = remark ? remark : "not known: the tank program passes over it" };
+            .param.key = key,
+            .param.doc = remark ? remark : TR("not known: the tank program passes over it") };
         tobi_import_note_key(im, &row, value, shown, NULL);
     }
 }
@@ -399,16 +401,16 @@ static char *write_closing(const tank *t)
 {
     char *text = NULL;
     const int length = asprintf(&text,
-        "Not in the files but in the program: density %g kg/m3, viscosity %g Pa s, gravity %g m/s2\n"
-        "along -z, walls without friction, no surface tension. The method is isph; eisph is\n"
-        "--set method=eisph.\n"
-        "%s\n"
-        "output.interval = %g s: %d steps of max_dt, as before, and at most %d outputs. Sensors are in\n"
-        "probes.csv, NAME_pressure, after each step.\n",
+        tr("Not in the files but in the program: density %g kg/m3, viscosity %g Pa s, gravity %g m/s2\n"
+           "along -z, walls without friction, no surface tension. The method is isph; eisph is\n"
+           "--set method=eisph.\n"
+           "%s\n"
+           "output.interval = %g s: %d steps of max_dt, as before, and at most %d outputs. Sensors are in\n"
+           "probes.csv, NAME_pressure, after each step.\n"),
         density, viscosity, gravity,
-        t->closed ? "The domain ends with the tank's lid."
-                  : "The domain reaches half the tank's height above it, between the same sides; there "
-                    "was no lid.",
+        t->closed ? tr("The domain ends with the tank's lid.")
+                  : tr("The domain reaches half the tank's height above it, between the same sides; there "
+                       "was no lid."),
         output_interval(t), STEPS_PER_OUTPUT, OUTPUTS);
     return length < 0 ? NULL : text;
 }

@@ -1,5 +1,6 @@
 /* What each key of the tank program's files means. Keys with a unit are read; the others are only told.
    Drawback: the sentences about keys that the program passed over repeat what its users know. */
+#include "base/language.h"
 #include "scene/import/tank.h"
 #include <math.h>
 #include <string.h>
@@ -62,14 +63,15 @@ const tobi_old_section
     tobi_tank_setting_section = { "setting.json", setting_keys, sizeof(tobi_tank_setting) },
     tobi_tank_object_section = { "the object", object_keys, sizeof(tobi_tank_object) };
 
-static const char wave_codes[] = "of the wave codes: the tank program's bodies never moved; give a motion";
-static const char older[] = "of the programs of 2021 and 2022; the tank program passes over it";
+static const char wave_codes[] =
+    TR("of the wave codes: the tank program's bodies never moved; give a motion");
+static const char older[] = TR("of the programs of 2021 and 2022; the tank program passes over it");
 
 static const struct { const char *key, *remark; } passed_over[] = {
     { "velocity", wave_codes }, { "acceleration", wave_codes }, { "COM", wave_codes },
-    { "isFixed", "every body was fixed, and is" },
-    { "output_vtu_file_name", "results are named by the method's own rules" },
-    { "output_pvd_file_name", "results are named by the method's own rules" },
+    { "isFixed", TR("every body was fixed, and is") },
+    { "output_vtu_file_name", TR("results are named by the method's own rules") },
+    { "output_pvd_file_name", TR("results are named by the method's own rules") },
     { "density", older }, { "mu", older }, { "initial_surface_height", older }, { "xbounds", older },
     { "ybounds", older }, { "zbounds", older }, { "total_volume", older }, { "volume_of_a_particle", older },
     { "rotate", older }, { "scale", older }, { "translate", older }, { "reverseNormal", older },

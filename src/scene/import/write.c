@@ -1,6 +1,7 @@
 /* Writing a translated scene to a file of its own. */
 #define _GNU_SOURCE 1
 #include "base/file.h"
+#include "base/language.h"
 #include "scene/import/import.h"
 #include "scene/scene.h"
 #include "scene/write.h"
@@ -61,8 +62,8 @@ static int tell_absolute(char **table, json_t *object, const char *key)
     const char *path = json_string_value(json_object_get(object, key));
     char *longer;
     if (!path || path[0] != '/') return 1;
-    if (asprintf(&longer, "%sAbsolute path: %s. To move the new scene, copy this file beside it and name it "
-                 "from there.\n", *table, path) < 0) return 0;
+    if (asprintf(&longer, tr("%sAbsolute path: %s. To move the new scene, copy this file beside it and "
+                             "name it from there.\n"), *table, path) < 0) return 0;
     free(*table);
     *table = longer;
     return 1;
@@ -101,9 +102,9 @@ static tobi_status write_scene(const tobi_scene *scene, const char *from, const 
     if (status == TOBI_OK) status = tobi_file_open(&file, path, err);
     if (status == TOBI_OK) {
         const char *slash = strrchr(from, '/');
-        tobi_file_print(&file, "# Translated from %s, a scene of %s. What became of\n"
-                        "# its keys:\n",
-                        slash ? slash + 1 : from, scene->import_program);
+        tobi_file_print(&file, tr("# Translated from %s, a scene of %s. What became of\n"
+                                  "# its keys:\n"),
+                        slash ? slash + 1 : from, tr(scene->import_program));
         for (const char *line = *table; *line;) {
             size_t length = strcspn(line, "\n");
             tobi_file_print(&file, "#   %.*s\n", (int)length, line);
