@@ -78,7 +78,7 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     view = (isph_view){.count = count, .dimension = dimension, .open = !closed, .fades = !closed,
                        .gap_speed = 4, .spacing = pool.d, .h = pool.h, .volume = c->volume,
                        .weight = c->weight, .slope = c->slope, .shape = shape, .full = 2*c->rate,
-                       .inverse_h = (float)(1/pool.h), .density = 1000, .dt = 1e-3, .motion_dt = 2e-3,
+                       .inverse_h = (float)(1/pool.h), .density = 1000, .dt = 1e-3, .volume_dt = 2e-3,
                        .way = 5e-4, .second_order = 1, .keeps_volume = 1, .shift_damping = 2,
                        .surface_row = 1.2, .surface_force = 1.1, .surface_loss = 0.3,
                        .surface_lack = 0.2,
@@ -326,7 +326,7 @@ static double source_of(int64_t i, const sums *s)
     const double pull = view.open ? 0.05*clip((0.06 - loss_of(s))/0.03) : 0.5;
     const double e = fmax(error - left, view.gate[i] > 0 ? 0 : -pull);
     return s->difference + (1 - view.gate[i])*s->rest + 0.5*view.density*view.invariant[i] -
-           view.density/view.dt*s->divergence + view.density*0.1*e/(view.dt*view.motion_dt);
+           view.density/view.dt*s->divergence + view.density*0.1*e/(view.dt*view.volume_dt);
 }
 
 static void oracle_isph_rows(check *c, int64_t i, const sums *s)

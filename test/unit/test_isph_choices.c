@@ -1,5 +1,6 @@
 /* The choices of isph: each runs, each matters, those that contradict each other are refused; its terms per
    particle are those of the step; one keeps momentum. */
+#include "tobiuo/motion.h"
 #include "tobiuo/tobiuo.h"
 #include "calls.h"
 #include <math.h>
@@ -234,11 +235,61 @@ static void terms_are_those_of_the_step(void **state)
     tobi_world_destroy(world[1]);
 }
 
+/* N: how far the force on a disc that sways in a pool is from the mean of the steps before and after. */
+static double find_scatter(double cfl)
+{
+    tobi_world *world;
+    tobi_world_def w = make_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_body_def disc = tobi_default_body_def();
+    tobi_motion *motion;
+    tobi_body_info info;
+    double force[3] = {0}, sum = 0;
+    int count = 0;
+    w.domain_max[1] = 0.6;
+    w.cfl = cfl;
+    OK(tobi_motion_oscillation((double[3]){1, 0, 0}, 0.05, 1, 0, &motion, &err));
+    OK(tobi_motion_set_times(motion, 0, INFINITY, 1, &err));
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    fill.box_max[0] = fill.box_max[1] = 0.4;
+    OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+    disc.name = "disc";
+    disc.sphere_centre[0] = disc.sphere_centre[1] = 0.2;
+    disc.sphere_radius = 0.06;
+    disc.motion = tobi_motion_positions;
+    disc.motion_user = motion;
+    disc.motion_rigid = 1;
+    OK(tobi_world_add_body(world, &disc, &err));
+    while (tobi_world_time(world) < 0.8) {
+        OK(tobi_world_step(world, 0, NULL, &err));
+        OK(tobi_world_body(world, 0, &info));
+        force[0] = force[1], force[1] = force[2], force[2] = info.pressure_force[0];
+        if (tobi_world_time(world) < 0.3) continue;
+        sum += pow(force[1] - 0.5*(force[0] + force[2]), 2);
+        count++;
+    }
+    tobi_world_destroy(world);
+    tobi_motion_free(motion);
+    return sqrt(sum/count);
+}
+
+/* What corrects the volume goes by time, not by steps: as a share of each step it made forces scatter as
+   much with short steps as with long ones here, and more elsewhere. */
+static void short_steps_make_forces_smoother(void **state)
+{
+    (void)state;
+    const double long_steps = find_scatter(0.4), short_steps = find_scatter(0.1);
+    print_message("scatter %g N with a cfl of 0.4, %g N with 0.1\n", long_steps, short_steps);
+    assert_true(short_steps < 0.75*long_steps);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_choice_runs_and_matters), cmocka_unit_test(contradictions_are_refused),
         cmocka_unit_test(terms_are_those_of_the_step), cmocka_unit_test(the_symmetric_sum_keeps_momentum),
+        cmocka_unit_test(short_steps_make_forces_smoother),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -93,7 +93,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     v->volume_gain = d->volume_gain*fmin(s->sim->time*sound(s, m)/(RISE*m->memory.depth), 1);
     /* what the pressure forgets comes back as compression: of a pipe under pressure only the losses may */
     v->base = sph_openings_mean_pressure(s);
-    v->keep = 1 - FORGET*v->volume_gain*v->dt/v->motion_dt;
+    v->keep = 1 - FORGET*v->volume_gain*v->dt/v->volume_dt;
     return TOBI_OK;
 }
 

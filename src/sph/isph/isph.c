@@ -29,6 +29,8 @@ static const double SOFT_COURANT = 0.08;
 /* The same of a wave along a thin solid. */
 static const double STIFF_COURANT = 2;
 
+/* Spacings in the step that errors of volume are corrected by: the default of cfl. */
+static const double VOLUME_COURANT = 0.4;
 static const double FULL_SHIFT_STEP = 0.2, SHIFT_AT_REST = 0.1;
 /* Over what a gradient taken at the begin of the shift amplifies, by Lax and Wendroff: more than 1, as
    particles are disordered, and the more the farther they go in a step: at least, and per spacing. */
@@ -99,6 +101,7 @@ double isph_choose_dt(tobi_system *s)
     const double body = s->sim->body_speed > s->sim->wall_speed ? s->sim->body_speed : 0;
     const double speed = fmax(m->memory.speed + body, s->sim->body_speed);
     m->motion_dt = fmin(s->sim->def.cfl*s->smoothing.spacing/fmax(speed, 1e-12), sph_gravity_dt(s));
+    m->volume_dt = fmin(VOLUME_COURANT*s->smoothing.spacing/fmax(speed, 1e-12), sph_gravity_dt(s));
     const double dt = fmin(fmin(m->motion_dt, choose_soft_dt(s)),
                            fmin(sph_force_dt(s), tobi_couple_dt(s)));
     return fixed > 0 ? fixed : most > 0 ? fmin(dt, most) : dt;
@@ -153,7 +156,7 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     bind(s, m);
     m->solver.view.held = NULL;
     m->solver.view.open = m->solver.view.fades = m->memory.vessel != SPH_VESSEL_FULL;
-    m->solver.view.motion_dt = fmax(m->motion_dt, s->dt);
+    m->solver.view.volume_dt = fmax(m->volume_dt, s->dt);
     m->solver.view.gap_speed = choose_gap_speed(s, m);
     choose_shift(s, m);
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, clock, err));
@@ -432,7 +435,7 @@ void isph_derive(tobi_system *s, const char *field)
         return;
     }
     v->dt = s->dt > 0 ? s->dt : isph_choose_dt(s);
-    v->motion_dt = fmax(m->motion_dt, v->dt);
+    v->volume_dt = fmax(m->volume_dt, v->dt);
     find_geometry(s, m, NULL);
     sph_stage(s, &m->view, SPH_DERIVE);
     isph_fields_derive(&m->solver, s, &m->view, field);

@@ -277,7 +277,7 @@ TOBI_FN double isph_volume_source(const isph_view *v, int64_t i, double divergen
                  error = v->volume_sum*(v->concentration[i] - 1 + lack) - v->volume_change*v->dt*divergence,
                  left = v->open ? 0 : ISPH_VOLUME_LEFT,
                  e = isph_larger(error - isph_clamp(error, -left, left), least);
-    return v->density*v->volume_gain*e/(v->dt*v->motion_dt);
+    return v->density*v->volume_gain*e/(v->dt*v->volume_dt);
 }
 
 /* A row of the pressure equation, eq. (6), and its source, eq. (8). The start of the solve is the last

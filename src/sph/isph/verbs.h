@@ -20,6 +20,7 @@ typedef struct isph {
        liquid along gravity; started: 1 after the first solve */
     struct { double speed, vessel, failures, depth, started; } memory;
     double motion_dt;                /* s, the step that motion alone allows                        */
+    double volume_dt;                /* s, the same by the default of cfl                           */
     int sides_due;                   /* 1: the info has no pressure on the sides of the domain yet  */
 } isph;
 

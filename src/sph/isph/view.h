@@ -75,7 +75,7 @@ typedef struct isph_view {
     const tobi_double2 *TOBI_RESTRICT scalars;
     float gravity_dt;                /* s: dt while velocities hold the step's gravity, else 0      */
     double density;                  /* kg/m3                                                       */
-    double dt, motion_dt;            /* s; motion_dt: the step that motion alone allows             */
+    double dt, volume_dt;            /* s; volume_dt: the step that errors of volume are corrected by */
     double way;                      /* s: of the motion after the pressure: dt, or dt/2            */
     int fades;                       /* 1: the shift loses its part along n below a surface         */
     int second_order;                /* 1: the list is that of the middle of the step               */
