@@ -212,7 +212,7 @@ static int is_pool(const tobi_world *w)
         if (d->gravity[a] != 0 && d->wall_min[a] == TOBI_WALL_PERIODIC) return 0;
     for (int k = 0; k < w->sim.body_count; k++)
         if (w->sim.bodies[k].vessel) return 0;
-    return d->dimension == 2 && !w->drive && w->sim.opening_count == 0 && !tobi_world_solids(w);
+    return !w->drive && w->sim.opening_count == 0 && !tobi_world_solids(w);
 }
 
 /* Upwards to two digits: the numbers at the scale are short. */
@@ -229,16 +229,16 @@ tobi_status tobi_world_expected_speed(const tobi_world *w, double *speed, tobi_e
     const int up = fabs(w->sim.def.gravity[0]) > fabs(w->sim.def.gravity[1]) ? 0 : 1;
     double drop = 0;
     *speed = fall > 0 ? fmax(fall, given) : 0;
-    if (!is_pool(w)) return TOBI_OK;
+    if (w->sim.def.dimension != 2) return TOBI_OK;
     mover *bodies = malloc(((size_t)w->sim.body_count + 1)*sizeof *bodies);
     if (!bodies) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
-    *speed = fmax(given, LEAST*fall);
+    if (is_pool(w)) *speed = fmax(given, LEAST*fall);
     for (int k = 0; k < w->sim.body_count; k++) {
         bodies[k] = watch_body(w, &w->sim.bodies[k], up);
         *speed = fmax(*speed, OVER_BODY*bodies[k].speed);
     }
-    if (fall > 0) *speed = fmax(*speed, OVER_MEAN*sqrt(2*level_all(w, bodies, up, &drop)));
-    *speed = round_up(fmax(*speed, sqrt(2*drop)));
+    if (is_pool(w) && fall > 0) *speed = fmax(*speed, OVER_MEAN*sqrt(2*level_all(w, bodies, up, &drop)));
+    if (is_pool(w) || *speed > fmax(fall, given)) *speed = round_up(fmax(*speed, sqrt(2*drop)));
     free(bodies);
     return TOBI_OK;
 }

@@ -92,6 +92,15 @@ static void others_fall_through_the_domain(void **state)
     assert_float_equal(expect(DOWN, pool, ", \"frame\": { \"surge\": { \"amplitude\": 0.1, "
                               "\"period\": 2 } }"), fall, 1e-9);
     assert_float_equal(expect("0, 0", BOX(0, 0, 4, 2), ""), 0, 0);
+    /* A stirrer in a vessel is faster than that: its rim, 0.2 m from the axis, at 40 pi/s. */
+    const char *vessel = ", \"bodies\": [ { \"name\": \"v\", \"vessel\": true, "
+        "\"sphere\": { \"centre\": [2, 1], \"radius\": 0.8 } }, { \"name\": \"s\", \"sphere\": { \"centre\": "
+        "[2, 1], \"radius\": 0.2 }, \"motion\": { \"rotation\": { \"centre\": [2, 1], \"rate\": %d } } } ]";
+    char bodies[400];
+    snprintf(bodies, sizeof bodies, vessel, 7200);
+    assert_float_equal(expect(DOWN, BOX(1.5, 0.4, 2.5, 0.8), bodies), two_digits(1.5*0.2*40*acos(-1)), 1e-9);
+    snprintf(bodies, sizeof bodies, vessel, 36);
+    assert_float_equal(expect(DOWN, BOX(1.5, 0.4, 2.5, 0.8), bodies), fall, 1e-9);
     assert_float_equal(expect("0, 0", "{ \"box\": { \"min\": [0, 0], \"max\": [1, 1] }, "
                               "\"velocity\": [3, 4] }", ""), 5, 1e-9);
 }
