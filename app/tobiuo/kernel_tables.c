@@ -122,13 +122,15 @@ static int add_curves(const kernel_options *o, panel *a, kernel_function *f, cha
 
 static int write_script(const kernel_options *o)
 {
-    char names[KERNEL_LIMIT][32], picture_file[32];
-    picture p = { .x_label = "r, m", .end = o->support, .panels = 2 };
+    char names[KERNEL_LIMIT][32], picture_file[32], unit[2][16];
+    picture p = { .x_label = tr("r, m"), .end = o->support, .panels = 2 };
     FILE *file = open_table(o, "plots.gnuplot");
     if (!file) return EXIT_ERROR;
     snprintf(p.title, sizeof p.title, tr("Kernels, support %g m, %d-D"), o->support, o->dimension);
-    snprintf(p.panel[0].y_label, sizeof p.panel[0].y_label, "W, 1/m%d", o->dimension);
-    snprintf(p.panel[1].y_label, sizeof p.panel[1].y_label, "dW/dr, 1/m%d", o->dimension + 1);
+    for (int k = 0; k < 2; k++) {
+        snprintf(unit[k], sizeof unit[k], "1/m%d", o->dimension + k);
+        picture_label(&p.panel[k], k == 0 ? "W" : "dW/dr", unit[k]);
+    }
     snprintf(picture_file, sizeof picture_file, "kernels.%s", o->format);
     int code = add_curves(o, &p.panel[0], tobi_kernel_value, names);
     if (code == 0) code = add_curves(o, &p.panel[1], tobi_kernel_slope, names);

@@ -90,6 +90,8 @@ says "画像：out/picture.png、"
 expect 1 "outにフィールド'heat'はない。" sample out --line "0.2,0 to 0.2,0.2" --fields heat
 expect 0 "" inspect tank.json --at 0.2,0.1 --out inspect
 says "カーネル         "
+check "labels of the kernels are Japanese" grep -q "カーネル、影響半径" inspect/kernels.svg
+check "and their units stand as elsewhere" test "$(grep -cE '>(W \(1/m2\)|dW/dr \(1/m3\)|r \(m\))<' inspect/kernels.svg)" = 3
 expect 1 "out: センサーがない（probes.csvがない）" waves out
 expect 0 "tobiuo: note: fluid 'water': its density is 1 kg/m3" run tank.json --out out --force --language en
 
