@@ -296,12 +296,14 @@ static int take_waves(answers *a)
 static void print_responses(const answers *a)
 {
     const wave_run *w = a->run;
-    printf("%-22s %-8s  %10s %10s %10s %11s  gain at %.3g s, per m  phase\n", "response", "unit",
-           "mean", "least", "most", "significant", 1/w->set.peak);
-    for (const response *r = a->list; r < a->list + a->count; r++)
-        printf("%-22s %-8s  %10.4g %10.4g %10.4g %11.4g  %21.4g %6.0f\n", r->label, r->unit, r->record.mean,
-               r->least, r->most, r->record.height_m0, r->gain[a->peak].gain,
-               r->gain[a->peak].phase);
+    printf(tr("response               unit            mean      least       most significant  "
+              "gain at %.3g s, per m  phase\n"), 1/w->set.peak);
+    for (const response *r = a->list; r < a->list + a->count; r++) {
+        printf("%-22s ", r->label);
+        print_columns(stdout, tr(r->unit), 8);
+        printf("  %10.4g %10.4g %10.4g %11.4g  %21.4g %6.0f\n", r->record.mean, r->least, r->most,
+               r->record.height_m0, r->gain[a->peak].gain, r->gain[a->peak].phase);
+    }
     printf(tr("waves: %s, H_m0 %.4g m\n"), w->options->group_count
            ? tr("those that go on past the first --gauges")
            : w->set.gauge[0].name, a->height);

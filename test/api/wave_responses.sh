@@ -95,7 +95,9 @@ raise SystemExit(not (len(rows) > 50 and worst < 0.12 and turns < 6))'
 if command -v gnuplot > /dev/null; then check "a picture" test -s whole/plots/wave_gains.svg; fi
 cp whole/bodies.csv anchored.csv
 awk -F, -v OFS=, '$2 == "raft" && $1 < 20 { $3 += 3 } { print }' anchored.csv > whole/bodies.csv
-expect 0 "" waves whole --gauges G1,G2,G3 --response raft --from 20
+check "heads of the lists" test "$(grep -cE '^(gauge +H_m0 m .*waves|gauges +on, H_m0 m .*|response +unit .* phase)$' out.txt)" = 3
+expect 0 "" waves whole --gauges G1,G2,G3 --response raft --from 20 --language ja
+check "in Japanese" test "$(grep -cE '^(センサー +H_m0 m .*波|センサー +入射H_m0 m .*|応答 +単位 .* 位相)$' out.txt)" = 3
 near raft_x "phase [degrees]" 40 3
 expect 0 "periods of the waves; gains and phases of fewer than 8 are rough" waves whole --response raft --from 290
 mv anchored.csv whole/bodies.csv
