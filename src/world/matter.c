@@ -2,9 +2,11 @@
    liquid of the world; that it trims or lists is not found. */
 #include "base/error.h"
 #include "geom/flotation.h"
+#include "geom/vec3.h"
 #include "tobiuo/matter.h"
 #include "world/world.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* kg/m3, of the only liquid; 0: none or several. */
@@ -68,6 +70,24 @@ static void find_flotation(const tobi_world *w, const tobi_body *b, tobi_body_ma
     for (int a = 0; a < 3; a++)
         if (a != up && (dimension == 3 || a == 2))
             m->metacentre[a] = f.inertia[a]/displaced + f.buoyancy - sign*(m->centre[up] - f.lowest);
+}
+
+/* Of a body whose centre of mass is given, as of a ship: a box that was dropped may well turn over. */
+tobi_status tobi_world_note_balance(tobi_world *w, tobi_error *err)
+{
+    char text[TOBI_NOTE];
+    tobi_body_matter m;
+    for (int k = 0; tobi_world_body_matter(w, k, &m) == TOBI_OK; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        if (vec3_dot(b->middle, b->middle) == 0) continue;
+        for (int a = 0; a < 3; a++) {
+            if (!(m.metacentre[a] < 0) || b->rigid.locked >> (3 + a) & 1) continue;
+            snprintf(text, sizeof text, tr("it capsizes about %c: its GM is %.3g m, below 0. A lower "
+                     "centre_of_mass, or ballast, makes it upright\n"), "xyz"[a], m.metacentre[a]);
+            TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
+        }
+    }
+    return TOBI_OK;
 }
 
 tobi_status tobi_world_body_matter(const tobi_world *w, int body, tobi_body_matter *m)

@@ -47,6 +47,29 @@ static tobi_status note_bodies(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Mass inside a body is nowhere farther from an axis than its box reaches. */
+static tobi_status note_inertia(tobi_world *w, tobi_error *err)
+{
+    for (int k = 0; k < w->sim.body_count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        double min[3], max[3], reach[3];
+        char text[TOBI_NOTE];
+        if (b->rigid.kind == TOBI_PRESCRIBED || b->rigid.deforms) continue;
+        tobi_mesh_box(&b->mesh, min, max);
+        for (int a = 0; a < 3; a++) reach[a] = fmax(max[a] - b->rest.centre[a], b->rest.centre[a] - min[a]);
+        for (int a = w->sim.def.dimension == 2 ? 2 : 0; a < 3; a++) {
+            const double far = hypot(reach[(a + 1)%3], reach[(a + 2)%3]);
+            const double gyration = sqrt(b->rigid.inertia[4*a]/b->rigid.mass);
+            if (!(gyration > 1.001*far)) continue;
+            snprintf(text, sizeof text, tr("its radius of gyration about %c is %.3g m, and no part of it is "
+                     "farther than %.3g m from there: is its inertia in kg m2, and its mass in kg?\n"),
+                     "xyz"[a], gyration, far);
+            TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
+        }
+    }
+    return TOBI_OK;
+}
+
 static tobi_status note_gravity(tobi_world *w, double g, tobi_error *err)
 {
     char text[TOBI_NOTE];
@@ -118,6 +141,7 @@ tobi_status tobi_world_note_units(tobi_world *w, tobi_error *err)
     TOBI_TRY(note_gravity(w, g, err));
     TOBI_TRY(note_up(w, g, err));
     TOBI_TRY(note_jets(w, err));
+    TOBI_TRY(note_inertia(w, err));
     if (w->system[0].fluid_count == 0) return TOBI_OK;
     TOBI_TRY(note_gas(w, err));
     TOBI_TRY(note_bodies(w, err));

@@ -239,6 +239,7 @@ static tobi_status start_bodies(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_start_bodies(w, err));
     TOBI_TRY(tobi_world_note_starts(w, err));
     TOBI_TRY(tobi_world_note_units(w, err));
+    TOBI_TRY(tobi_world_note_balance(w, err));
     TOBI_TRY(tobi_world_note_lines(w, err));
     TOBI_TRY(tobi_world_note_makers(w, err));
     TOBI_TRY(tobi_world_note_probes(w, err));

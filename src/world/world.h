@@ -140,6 +140,8 @@ tobi_status tobi_world_note_liquids(tobi_world *w, tobi_error *err);
 tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err);
 /* Notes lines whose ends lie far from their bodies, and catenaries that start taut. */
 tobi_status tobi_world_note_lines(tobi_world *w, tobi_error *err);
+/* Notes bodies that their given centre of mass makes turn over. */
+tobi_status tobi_world_note_balance(tobi_world *w, tobi_error *err);
 /* Adds a note for each number that is likely in other units than metres, kilograms and seconds. */
 tobi_status tobi_world_note_units(tobi_world *w, tobi_error *err);
 /* Notes blades whose motion ends their cut at a side before the last layer of particles is parted. */

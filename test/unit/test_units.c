@@ -161,6 +161,35 @@ static int count_in_scene(const char *scene, const char *text)
     return found;
 }
 
+/* A barge, 0.2 m wide, with a draught of 0.1 m: GM is 0.0833 m less KG. Its farthest corner from a centre of
+   mass 0.04 m above the keel is 0.189 m away. */
+static int count_of_barge(const char *keys, const char *text)
+{
+    char scene[1000];
+    snprintf(scene, sizeof scene, "{ \"dimension\": 2, \"method\": \"isph\", \"domain\": { \"min\": [0, 0], "
+             "\"max\": [1, 0.8] }, \"spacing\": 0.02, \"end_time\": 1, "
+             "\"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"box\": { "
+             "\"min\": [0, 0], \"max\": [1, 0.4] } } ] } ], "
+             "\"bodies\": [ { \"name\": \"barge\", \"mass\": 20, \"dynamics\": \"free\", "
+             "\"box\": { \"min\": [0.4, 0.3], \"max\": [0.6, 0.5] }, %s } ] }", keys);
+    return count_in_scene(scene, text);
+}
+
+static void ships_that_cannot_be_are_told(void **state)
+{
+    (void)state;
+    const char *capsizes = "'barge': it capsizes about z: its GM is -0.0967 m, below 0";
+    const char *spread = "'barge': its radius of gyration about z is 0.316 m, and no part of it is "
+                         "farther than 0.189";
+    assert_int_equal(count_of_barge("\"centre_of_mass\": [0.5, 0.48]", capsizes), 1);
+    assert_int_equal(count_of_barge("\"centre_of_mass\": [0.5, 0.48], \"locked\": \"turn_z\"", capsizes), 0);
+    assert_int_equal(count_of_barge("\"centre_of_mass\": [0.5, 0.34]", "capsizes"), 0);
+    assert_int_equal(count_of_barge("\"restitution\": 0", "capsizes"), 0);      /* none is given */
+    assert_int_equal(count_of_barge("\"centre_of_mass\": [0.5, 0.34], \"inertia\": [2, 2, 2]", spread), 1);
+    assert_int_equal(count_of_barge("\"centre_of_mass\": [0.5, 0.34], \"inertia\": [0.2, 0.2, 0.2]",
+                                    "gyration"), 0);
+}
+
 static void friction_without_a_partner_is_told(void **state)
 {
     (void)state;
@@ -212,6 +241,7 @@ int main(void)
         cmocka_unit_test(a_rough_surface_is_told),
         cmocka_unit_test(a_jet_is_told),
         cmocka_unit_test(an_inlet_in_a_pool_is_told),
+        cmocka_unit_test(ships_that_cannot_be_are_told),
         cmocka_unit_test(friction_without_a_partner_is_told),
         cmocka_unit_test(a_sudden_wave_maker_is_told),
     };
