@@ -152,6 +152,8 @@ enum { KEY_UNTIL = 256, KEY_SPACING, KEY_SET, KEY_LANGUAGE, KEY_OWN };
     { "set", KEY_SET, "PATH=VALUE", 0, \
       "change any value of the scene, e.g. fluids[0].viscosity=0.1", 0 }
 void parse_language(struct argp_state *state, const char *value);
+/* Of "--language ja" at argv[1], without argp: how many words that is; -1 after a complaint. */
+int take_language(int argc, char **argv);
 error_t parse_scene_option(struct argp_state *state, int key, const char *value, overrides *set,
                            const char **scene);
 

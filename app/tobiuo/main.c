@@ -113,19 +113,6 @@ static void keep_memory(void)
     mallopt(M_TRIM_THRESHOLD, 512 << 20);
 }
 
-/* "tobiuo --language ja ...": how many words of the arguments that is; -1: a mistake. */
-static int take_language(int argc, char **argv)
-{
-    static const char option[] = "--language";
-    const size_t length = strlen(option);
-    if (argc < 2 || strncmp(argv[1], option, length) != 0) return 0;
-    const char *value = argv[1][length] == '=' ? argv[1] + length + 1 : argc > 2 ? argv[2] : "";
-    if (argv[1][length] && argv[1][length] != '=') return 0;
-    if (choose_language(value) == 0) return argv[1][length] ? 1 : 2;
-    complain("--language: '%s' is neither ja nor en", value);
-    return -1;
-}
-
 int main(int argc, char **argv)
 {
     keep_memory();

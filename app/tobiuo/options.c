@@ -47,6 +47,18 @@ void parse_language(struct argp_state *state, const char *value)
         usage_error(state, tr("--language: '%s' is neither ja nor en"), value);
 }
 
+int take_language(int argc, char **argv)
+{
+    static const char option[] = "--language";
+    const size_t length = strlen(option);
+    if (argc < 2 || strncmp(argv[1], option, length) != 0) return 0;
+    const char *value = argv[1][length] == '=' ? argv[1] + length + 1 : argc > 2 ? argv[2] : "";
+    if (argv[1][length] && argv[1][length] != '=') return 0;
+    if (choose_language(value) == 0) return argv[1][length] ? 1 : 2;
+    complain("--language: '%s' is neither ja nor en", value);
+    return -1;
+}
+
 error_t parse_argument(struct argp_state *state, int key, const char *value, const char *name,
                        const char **argument)
 {

@@ -203,6 +203,12 @@ const struct argp new_argp = { .parser = parse, .args_doc = "NAME [DIR]",
 int tobiuo_new(int argc, char **argv)
 {
     new_options o = { 0 };
+    for (int k = 0; k < argc - 1; k++) {              /* not an option of a family */
+        const int taken = take_language(argc - k, argv + k);
+        if (taken < 0) return EXIT_USAGE;
+        memmove(argv + k + 1, argv + k + 1 + taken, (size_t)(argc - k - taken)*sizeof *argv);
+        argc -= taken;
+    }
     if (wants_family(argc, argv)) return write_family(argc, argv);
     parse_arguments(&new_argp, argc, argv, &o);
     if (!o.name) return list_families();

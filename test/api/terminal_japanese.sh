@@ -49,6 +49,11 @@ expect 0 "" new
 says "      --spacing        粒子間隔 (0.0125 m)"
 expect 0 "" new dam_break my_dam --spacing 0.02
 says "my_dam/scene.jsonにdam_breakのシーンを書いた。計算するには：tobiuo run my_dam"
+expect 0 "" new dam_break my_other --spacing 0.02 --language ja
+says "my_other/scene.jsonにdam_breakのシーンを書いた"
+expect 0 "" new --language=en
+says "Families of scenes"
+expect 2 "'fr'はjaでもenでもない" new dam_break --language fr
 check "its comments are Japanese" test "$(grep '//' my_dam/scene.json | grep -cE '壁|単位')" -ge 2
 expect 1 "水が水槽より高い" new dam_break high --water-height 3
 
