@@ -30,10 +30,11 @@ static const char *const column_names[COLUMNS] = {"time", "x",  "y",  "z",     "
    holds without a unit. */
 typedef struct unit { const char *name; double scale; } unit;
 static const unit length_units[] = {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {0}};
-static const unit time_units[] = {{"s", 1}, {"ms", 1e-3}, {0}};
+static const unit time_units[] = {{"s", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}, {0}};
 static const unit pull_units[] = {{"m/s2", 1}, {"m/s^2", 1}, {0}};
 static const unit speed_units[] = {{"m/s", 1}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {0}};
-static const unit rate_units[] = {{"m3/s", 1}, {"m2/s", 1}, {0}}, plain_units[] = {{"1", 1}, {0}};
+static const unit rate_units[] = {{"m3/s", 1}, {"m2/s", 1}, {"l/s", 1e-3}, {0}};
+static const unit plain_units[] = {{"1", 1}, {0}};
 static const unit turn_units[] = {{"degrees/s", 1}, {"deg/s", 1}, {"rad/s", 1/DEGREE}, {0}};
 static const unit angle_units[] = {{"degrees", 1}, {"deg", 1}, {"rad", 1/DEGREE}, {0}};
 static const unit torque_units[] = {{"N m", 1}, {"Nm", 1}, {"kN m", 1e3}, {"kNm", 1e3}, {0}};

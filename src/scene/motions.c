@@ -88,8 +88,8 @@ static const tobi_param keyframes_rows[] = {
       .doc = "A CSV file whose first line names its columns: time (s), the shift x, y, z from the rest "
              "pose (m), and for a turn qw, qx, qy, qz or ax, ay, az, angle (degrees) or roll, pitch, yaw "
              "(degrees, about x, then y, then z). A name may bring a unit along, as in x [mm]: m, cm, mm, s, "
-             "ms, degrees, deg, rad. Cubic between the rows; before the first and after the last the body "
-             "stays." },
+             "ms, min, h, degrees, deg, rad. Cubic between the rows; before the first and after the last "
+             "the body stays." },
     { .key = "pivot", VEC3, AT(tobi_keyframes_def, pivot), PLACE, .unit = "m",
       .doc = "The point of the rest pose that turns are about." },
     { 0 }

@@ -119,6 +119,12 @@ static void names_may_bring_their_units(void **state)
     m = load("t (s)\troll [deg]\tyaw  [degrees]\n0\t90\t0\n", NULL);
     AT(m, 0, 0, 1, 0, 0, 0, 1);
     tobi_motion_free(m);
+    m = load("time [min],x\n0,0\n2,4\n", NULL);
+    AT(m, 30, 0, 0, 0, 1, 0, 0);
+    tobi_motion_free(m);
+    m = load("time (h),x\n0,0\n1,4\n", NULL);
+    AT(m, 900, 0, 0, 0, 1, 0, 0);
+    tobi_motion_free(m);
 }
 
 /* Rates of both sides of a row agree, for turns about changing axes too. */
@@ -206,11 +212,11 @@ static void bad_files_are_named_with_their_line(void **state)
         {"time,x,\n0,1\n", "rows.csv:1: an empty column name (a comma too many?)"},
         {"time [s],x [in]\n0,1\n", "rows.csv:1: column x is in [in]; allowed is [m], [cm], [mm] or no "
          "unit, which is m"},
-        {"time [min],x\n0,1\n", "column time is in [min]; allowed is [s], [ms]"},
+        {"time [d],x\n0,1\n", "column time is in [d]; allowed is [s], [ms], [min], [h] or no unit"},
         {"time,yaw [turns]\n0,1\n", "column yaw is in [turns]; allowed is [degrees], [deg], [rad] or "
          "no unit, which is degrees"},
         {"time,x [m\n0,1\n", "rows.csv:1: no ] after the unit [m"},
-        {"time (h),x\n0,1\n", "column time is in [h]; allowed is [s]"},
+        {"time (d),x\n0,1\n", "column time is in [d]; allowed is [s]"},
         {"time (s,x\n0,1\n", "rows.csv:1: no ) after the unit (s"},
         {"time,[m]\n0,1\n", "rows.csv:1: an empty column name"},
         {"time,x\n0,1\n1,-2e30\n", "rows.csv:3: -2e+30 in column x is too large; allowed is up to 1e+30"},

@@ -87,7 +87,7 @@ static uint64_t run_table(const char *method, int threads, int halfway)
     tobi_error err = { 0 };
     tobi_step_info first, last;
     char file[] = "/tmp/tobiuo_openings_XXXXXX", in[300], table[64];
-    write_flow(table, "time [s], flow_rate [m2/s]\n0.05, 0\n0.1, 0.2\n0.15, 0\n0.2, 0\n0.25, 0.1\n");
+    write_flow(table, "time [ms], flow_rate [l/s]\n50, 0\n100, 200\n150, 0\n200, 0\n250, 100\n");
     snprintf(in, sizeof in, IN "\"file\": \"%s\" }", table);
     must(make(method, threads, in, OUT, "", &w, &err), &err);
     first = *tobi_world_info(w);
@@ -305,7 +305,7 @@ static void test_wrong_tables(void **state)
         { "time, speed\n1, 1\n0, 1\n", "", "s.json:4:83: inlets[0].file: flow " },
         { "time, x\n0, 1\n", "", "a flow has the columns time (s) and one of speed (m/s) and flow_rate" },
         { "time, speed, flow_rate\n0, 1, 1\n", "", "and one of speed (m/s) and flow_rate (m3/s)" },
-        { "time, flow_rate [l/s]\n0, 1\n", "", "column flow_rate is in [l/s]; allowed is [m3/s]" },
+        { "time, flow_rate [gpm]\n0, 1\n", "", "flow_rate is in [gpm]; allowed is [m3/s], [m2/s], [l/s]" },
     };
     for (size_t k = 0; k < sizeof wrong/sizeof *wrong; k++) {
         char in[300], table[64];
