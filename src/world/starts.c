@@ -55,12 +55,32 @@ static tobi_status note_jerk(tobi_world *w, tobi_body *b, tobi_error *err)
     return tobi_world_add_notes(w, "body", b->name, text, err);
 }
 
+/* Whether it lies in the box around a vessel, whose walls then keep it from the sides of the domain. */
+static int is_in_vessel(const tobi_world *w, const tobi_region *r)
+{
+    for (int k = 0; k < w->sim.body_count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        int inside = b->vessel;
+        for (int a = 0; a < w->sim.def.dimension; a++) {
+            double low = INFINITY, high = -INFINITY;
+            for (int64_t i = 0; inside && i < b->mesh.vertex_count; i++) {
+                low = fmin(low, b->mesh.vertices[i][a]);
+                high = fmax(high, b->mesh.vertices[i][a]);
+            }
+            inside &= low < r->lower[a] && r->upper[a] < high;
+        }
+        if (inside) return 1;
+    }
+    return 0;
+}
+
 static tobi_status note_gap(tobi_world *w, const tobi_region *r, tobi_error *err)
 {
     const tobi_box *box = &w->system[0].box;
     const double d = w->system[0].smoothing.spacing;
     if (r->system != 0) return TOBI_OK;                /* a solid's                                */
-    if (r->in_vessel) return TOBI_OK;                  /* its walls are no sides of the domain     */
+    if (r->in_vessel || is_in_vessel(w, r)) return TOBI_OK;
+    if (!(vec3_length(w->sim.def.gravity) > 0)) return TOBI_OK;
     for (int side = 0; side < 2*box->dimension; side++) {
         const int a = side/2, upper = side%2;
         const double gap = upper ? box->lower[a] + box->size[a] - r->upper[a] : r->lower[a] - box->lower[a];

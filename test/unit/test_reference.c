@@ -269,6 +269,25 @@ static void restless_starts_are_told(void **state)
     tobi_world_destroy(world);
 }
 
+/* Without gravity nothing falls, and the walls of a vessel are no sides of the domain. */
+static void gaps_that_nothing_falls_into_are_not_told(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 3; round++) {
+        tobi_world *world;
+        char text[700];
+        snprintf(text, sizeof text, "{ \"dimension\": 2, \"spacing\": 0.05, \"end_time\": 1, "
+                 "\"domain\": { \"min\": [0, 0], \"max\": [2, 2] }, \"gravity\": [0, %s], "
+                 "\"fluids\": [ { \"name\": \"oil\", \"fill\": [ { \"sphere\": { \"centre\": [1, 1], "
+                 "\"radius\": 0.85 } } ] } ] %s }", round == 1 ? "0" : "-9.81",
+                 round == 2 ? ", \"bodies\": [ { \"name\": \"v\", \"vessel\": true, "
+                              "\"sphere\": { \"centre\": [1, 1], \"radius\": 0.86 } } ]" : "");
+        OK(start_scene(text, &world, &err));
+        assert_int_equal(count_notes(world, "m from the side at the"), round == 0);
+        tobi_world_destroy(world);
+    }
+}
+
 /* A cube that turns strikes the water with its faces; a round body slides along it. */
 static void what_turns_about_its_axis_is_not_told(void **state)
 {
@@ -497,6 +516,7 @@ int main(void)
         cmocka_unit_test(compression_is_told),
         cmocka_unit_test(angles_without_tension_are_told),
         cmocka_unit_test(the_dry_feels_no_water),
+        cmocka_unit_test(gaps_that_nothing_falls_into_are_not_told),
         cmocka_unit_test(what_turns_about_its_axis_is_not_told),
         cmocka_unit_test(spray_has_a_large_surface),
         cmocka_unit_test(high_domains_change_nothing),
