@@ -322,10 +322,10 @@ static void keep_largest(tobi_world *w, const tobi_acceleration *f)
         s->acceleration_change = fmax(s->acceleration_change, change_at(w, f, corner));
 }
 
-tobi_status tobi_world_sample_drive(tobi_world *w, tobi_error *err)
+tobi_status tobi_world_sample_drive(tobi_world *w, double until, tobi_error *err)
 {
     if (!w->drive) return TOBI_OK;
-    for (; (double)w->drive->sampled*SAMPLE <= w->sim.time; w->drive->sampled++) {
+    for (; (double)w->drive->sampled*SAMPLE <= until; w->drive->sampled++) {
         tobi_acceleration f;
         TOBI_TRY(find_field(w, (double)w->drive->sampled*SAMPLE, STEP, &f, err));
         keep_largest(w, &f);
@@ -356,8 +356,25 @@ tobi_status tobi_world_start_drive(tobi_world *w, tobi_error *err)
                              end*n/SAMPLES);
         TOBI_TRY(tobi_at_key(err, check_turn(w, &f, err), "frame"));
     }
-    TOBI_TRY(tobi_world_sample_drive(w, err));
+    TOBI_TRY(tobi_world_sample_drive(w, w->sim.time, err));
     return find_field(w, 0, STEP, &w->sim.acceleration, err);
+}
+
+tobi_status tobi_world_find_pull(const tobi_world *w, double step, double *pull, tobi_error *err)
+{
+    const tobi_simulation *s = &w->sim;
+    *pull = tobi_simulation_pull_size(s);
+    for (int n = 0; w->drive && n < TOBI_LOOKS; n++) {
+        tobi_acceleration f;
+        double sum = 0;
+        TOBI_TRY(find_drive(w, s->time + TOBI_LOOK[n]*step, step, &f, err));
+        for (int a = 0; a < s->def.dimension; a++) {
+            const double one = s->def.gravity[a] + f.uniform[a];
+            sum += one*one;
+        }
+        *pull = fmax(*pull, sqrt(sum));
+    }
+    return TOBI_OK;
 }
 
 tobi_status tobi_world_drive(tobi_world *w, tobi_error *err)

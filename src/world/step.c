@@ -33,8 +33,8 @@ enum { SUBSTEP_LIMIT = 10000 };
 /* s: the square of the inverse of a shorter step is no float. */
 static const double LEAST_STEP = 1e-18;
 
-/* m: the farthest that a driven body goes in a step; INFINITY where it would be too fast. */
-static tobi_status find_way(tobi_world *w, double step, double *way, tobi_error *err)
+/* m: the farthest that a driven body is from its place after a time; INFINITY where it would be too fast. */
+static tobi_status find_way_to(tobi_world *w, double step, double *way, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
     double speed = 0;
@@ -49,27 +49,68 @@ static tobi_status find_way(tobi_world *w, double step, double *way, tobi_error 
     return TOBI_OK;
 }
 
+/* m: the farthest that a driven body goes in a step. Without gravity steps may be as long as a period, at
+   the end of which a body that swings is back: it is looked for within as well. */
+static tobi_status find_way(tobi_world *w, double step, double *way, tobi_error *err)
+{
+    const int looks = tobi_simulation_pull_size(&w->sim) > 0 ? 1 : TOBI_LOOKS;
+    *way = 0;
+    for (int n = 0; n < looks && isfinite(*way); n++) {
+        double far;
+        TOBI_TRY(find_way_to(w, TOBI_LOOK[n]*step, &far, err));
+        *way = fmax(*way, far);
+    }
+    return TOBI_OK;
+}
+
+static int is_driven(const tobi_simulation *s)
+{
+    int driven = 0;
+    for (int k = 0; k < s->body_count; k++)
+        driven |= s->bodies[k].motion && s->bodies[k].rigid.kind == TOBI_PRESCRIBED;
+    return driven;
+}
+
 /* A body that rests may set off within the step, and methods know the speeds of the last step alone. Without
    gravity nothing else bounds it. Halves dt until such bodies go twice the way that cfl allows, at most. A
-   jump is as far in a sixty-fourth of the step as in the whole: it is left to the whole. */
+   jump is as far in a sixty-fourth of the step as in the whole: it is left to the whole. So is what swings
+   faster than that: the first step, which nothing bounds, is halved on, and later ones grow by as much. */
 static tobi_status look_ahead(tobi_world *w, double max_dt, double *dt, tobi_error *err)
 {
-    enum { LOOKS = 6 };
+    enum { LOOKS = 6, FIRST_LOOKS = 60 };
     const tobi_simulation *s = &w->sim;
     const double most = s->def.cfl*w->system[0].smoothing.spacing;
+    const int first = s->dt == 0, apart = first ? FIRST_LOOKS : LOOKS;
     double way, marked_way = INFINITY, marked = *dt;
     if (s->def.time_step > 0 || w->system[0].method->solids) return TOBI_OK;
+    if (!first && is_driven(s) && !(tobi_simulation_pull_size(s) > 0))
+        *dt = marked = fmin(*dt, ldexp(s->dt, LOOKS));
     for (int looks = 0;; looks++, *dt *= 0.5) {
         const double step = tobi_simulation_fit_dt(*dt, max_dt);
         if (s->body_speed*step > 0.5*most) return TOBI_OK;      /* it counts already */
         TOBI_TRY(find_way(w, step, &way, err));
         if (way <= 2*most) return TOBI_OK;
-        if (looks%LOOKS == 0 && looks > 0 && way >= 0.5*marked_way) {
+        if (looks%apart == 0 && looks > 0 && way >= 0.5*marked_way) {
             *dt = marked;
             return TOBI_OK;
         }
-        if (looks%LOOKS == 0) marked_way = way, marked = *dt;
+        if (looks%apart == 0) marked_way = way, marked = *dt;
         if (max_dt > 0) *dt = fmin(*dt, max_dt);
+    }
+}
+
+/* Gravity in time, or a tank, may set off likewise. Methods know the largest acceleration until now. Halves
+   dt until it is at most twice as long as what comes within it allows. */
+static tobi_status look_at_drive(tobi_world *w, double max_dt, double *dt, tobi_error *err)
+{
+    const tobi_simulation *s = &w->sim;
+    double pull;
+    if (!w->drive || s->def.time_step > 0 || w->system[0].method->solids) return TOBI_OK;
+    if (max_dt > 0) *dt = fmin(*dt, max_dt);
+    for (;; *dt *= 0.5) {
+        const double step = tobi_simulation_fit_dt(*dt, max_dt);
+        TOBI_TRY(tobi_world_find_pull(w, step, &pull, err));
+        if (step*step*pull <= 0.25*w->system[0].smoothing.spacing) return TOBI_OK;
     }
 }
 
@@ -105,6 +146,7 @@ static tobi_status choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI
     if (dt < LEAST_STEP)
         return tobi_fail(err, TOBI_STALLED, "the time step would be %.3g s at t = %.9g s; allowed are %g s "
                          "or more", dt, s->time, LEAST_STEP);
+    TOBI_TRY(look_at_drive(w, max_dt, &dt, err));
     TOBI_TRY(look_ahead(w, max_dt, &dt, err));
     s->dt = tobi_simulation_fit_dt(dt, max_dt);
     for (int k = 0; k < w->system_count; k++) {
@@ -205,8 +247,9 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     TOBI_TRY(tobi_nest_remember(w, err));
     tobi_nest_follow(w);
     TOBI_TRY(remember(w, err));
-    TOBI_TRY(tobi_world_sample_drive(w, err));
+    TOBI_TRY(tobi_world_sample_drive(w, s->time, err));
     TOBI_TRY(choose_dt(w, max_dt, substeps, err));
+    TOBI_TRY(tobi_world_sample_drive(w, s->time + s->dt, err));      /* what comes within it may speed up */
     TOBI_TRY(tobi_world_drive(w, err));
     TOBI_TRY(tobi_motors_tell(w, s->time, s->dt, err));
     tobi_absorb_predict(w);
