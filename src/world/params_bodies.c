@@ -135,7 +135,8 @@ static const tobi_param body_rows[] = {
              "spacing is too coarse for the layer at the surface." },
     { .key = "sealed", BOOL, AT(tobi_body_def, sealed),
       .doc = "Whether no liquid reaches the gap where the body lies on a side of the domain or another "
-             "body: then nothing presses it there. Else the gap has the pressure around it." },
+             "body: then nothing presses it there. Else the gap has the pressure around it. Faces of "
+             "prescribed bodies that touch, or of joined ones, are sealed in any case." },
     { .key = "contact_angle", REAL, AT(tobi_body_def, contact_angle), .def = { 90 },
       RANGE(10, 170), .unit = "degrees",
       .doc = "Angle, measured in the liquid, at which a surface with tension meets the body." },
