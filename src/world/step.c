@@ -104,13 +104,16 @@ static tobi_status look_ahead(tobi_world *w, double max_dt, double *dt, tobi_err
 static tobi_status look_at_drive(tobi_world *w, double max_dt, double *dt, tobi_error *err)
 {
     const tobi_simulation *s = &w->sim;
+    const double *g = s->def.gravity;
     double pull;
     if (!w->drive || s->def.time_step > 0 || w->system[0].method->solids) return TOBI_OK;
+    if (g[0] != 0 || g[1] != 0 || g[2] != 0) return TOBI_OK;        /* that bounds it */
     if (max_dt > 0) *dt = fmin(*dt, max_dt);
     for (;; *dt *= 0.5) {
         const double step = tobi_simulation_fit_dt(*dt, max_dt);
         TOBI_TRY(tobi_world_find_pull(w, step, &pull, err));
-        if (step*step*pull <= 0.25*w->system[0].smoothing.spacing) return TOBI_OK;
+        const double most = 0.25*w->system[0].smoothing.spacing;
+        if (!(step*step*pull > most) || step < LEAST_STEP) return TOBI_OK;
     }
 }
 
