@@ -26,6 +26,9 @@ static const char *const column_names[COLUMNS] = {"time", "x",  "y",  "z",     "
                                                   "speed", "flow_rate", "torque", "position", "force",
                                                   "level", "other"};
 
+/* Of x, y and z in records of ships, as of the motions of these names. */
+static const char *const ship_names[3] = {"surge", "sway", "heave"};
+
 /* The units that a column's name may bring along, as in "x [mm]", and how many of the first one is; the first
    holds without a unit. */
 typedef struct unit { const char *name; double scale; } unit;
@@ -218,6 +221,8 @@ static column find_column(const reader *r, const char *field)
         return strcasecmp(field, r->level) == 0 ? LEVEL : strcasecmp(field, "time") == 0 ? TIME : OTHER;
     for (int c = 0; c < LEVEL; c++)
         if (is_allowed(r, c) && strcasecmp(field, column_names[c]) == 0) return c;
+    for (int a = 0; a < 3 && is_allowed(r, X) && !is_gravity(r); a++)
+        if (strcasecmp(field, ship_names[a]) == 0) return X + a;
     return COLUMNS;
 }
 

@@ -62,6 +62,14 @@ static void constant_acceleration_is_met_exactly(void **state)
     tobi_motion_free(m);
 }
 
+static void shifts_have_the_names_of_ships_too(void **state)
+{
+    (void)state;
+    tobi_motion *m = load("time [s],Surge [mm],sway,heave [cm],yaw\n0,0,0,0,0\n1,500,2,-30,90\n", NULL);
+    AT(m, 1, 1, 0, 0, 0.5, 3, -0.3);
+    tobi_motion_free(m);
+}
+
 static void a_constant_turn_is_met_exactly(void **state)
 {
     (void)state;
@@ -193,6 +201,7 @@ static void bad_files_are_named_with_their_line(void **state)
     static const struct { const char *text, *says; } bad[] = {
         {"", "no rows"},
         {"time,x\n", "no rows"},
+        {"time,x,surge\n0,1,1\n", "rows.csv:1: a column comes twice: x"},
         {"x,y\n1,2\n", "rows.csv:1: there is no column \"time\""},
         {"# note\ntime,q\n0,1\n", "rows.csv:2: there is no column \"q\"; allowed are time (s)"},
         {"time,x,X\n0,1,2\n", "twice: x"},
@@ -257,6 +266,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(constant_acceleration_is_met_exactly),
+        cmocka_unit_test(shifts_have_the_names_of_ships_too),
         cmocka_unit_test(a_constant_turn_is_met_exactly),
         cmocka_unit_test(units_are_read),
         cmocka_unit_test(roll_comes_before_pitch_before_yaw),
