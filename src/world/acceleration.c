@@ -8,6 +8,7 @@
 #include "rigid/waves.h"
 #include "tobiuo/motion.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,6 +16,8 @@
    is so a function of time alone: steps are the same after a restart and whatever the end time. */
 static const double STEP = 1e-3, SAMPLE = 0.01;
 enum { SAMPLES = 1000 };
+/* Times gravity: more is hardly meant. */
+static const double HARD_FRAME = 3;
 
 struct tobi_drive {
     tobi_keyframes *rows;       /* of gravity, NULL = constant                      */
@@ -343,9 +346,34 @@ static int is_finite(const tobi_acceleration *f)
     return isfinite(sum);
 }
 
+/* m/s2: what liquid at rest feels in the middle of the domain. */
+static double felt_size(const tobi_world *w, const tobi_acceleration *f)
+{
+    double x[3] = { 0 }, out[3], sum = 0;
+    for (int a = 0; a < w->sim.def.dimension; a++) x[a] = 0.5*w->system[0].box.size[a];
+    tobi_acceleration_at(f, x, out);
+    for (int a = 0; a < w->sim.def.dimension; a++) {
+        const double felt = w->sim.def.gravity[a] + out[a];
+        sum += felt*felt;
+    }
+    return sqrt(sum);
+}
+
+/* Millimetres or degrees that are taken for metres or radians make a frame that no tank bears. */
+static tobi_status note_frame(tobi_world *w, double most, double when, tobi_error *err)
+{
+    const double *g = w->sim.def.gravity, weight = sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
+    char text[TOBI_NOTE];
+    if (!w->drive->frame || !(weight > 0) || most <= HARD_FRAME*weight) return TOBI_OK;
+    snprintf(text, sizeof text, tr("presses the liquid with up to %.3g m/s2, %.2g times gravity, at t = %.3g "
+             "s; if that is not meant, check the units of its motion\n"), most, most/weight, when);
+    return tobi_world_add_notes(w, "frame", NULL, text, err);
+}
+
 tobi_status tobi_world_start_drive(tobi_world *w, tobi_error *err)
 {
     const double end = w->sim.def.end_time;
+    double most = 0, when = 0;
     if (!w->drive) return TOBI_OK;
     TOBI_TRY(tobi_at_key(err, check_central(w, err), "central_force"));
     for (int n = 0; n <= SAMPLES; n++) {
@@ -355,7 +383,10 @@ tobi_status tobi_world_start_drive(tobi_world *w, tobi_error *err)
             return tobi_fail(err, TOBI_INVALID, "at t = %.9g s the acceleration of the frame is no number",
                              end*n/SAMPLES);
         TOBI_TRY(tobi_at_key(err, check_turn(w, &f, err), "frame"));
+        const double felt = felt_size(w, &f);
+        if (felt > most) most = felt, when = end*n/SAMPLES;
     }
+    TOBI_TRY(note_frame(w, most, when, err));
     TOBI_TRY(tobi_world_sample_drive(w, w->sim.time, err));
     return find_field(w, 0, STEP, &w->sim.acceleration, err);
 }

@@ -1,5 +1,6 @@
 /* Gravity in time, and the frame that a tank is seen from. */
 #include "calls.h"
+#include "tobiuo/motion.h"
 #include "tobiuo/scene.h"
 #include "world/acceleration.h"
 #include "world/world.h"
@@ -45,6 +46,28 @@ static void close_to(double value, double expected, double within)
 {
     if (!(fabs(value - expected) <= within))
         fail_msg("%.12g is not %.12g within %g", value, expected, within);
+}
+
+static int is_noted(double amplitude, const char *text)
+{
+    tobi_world *w = make_tank("dfsph", 2);
+    tobi_motion *surge;
+    int found = 0;
+    OK(tobi_motion_oscillation((double[3]){ 1, 0, 0 }, amplitude, 1, 0, &surge, &err));
+    OK(tobi_world_set_frame(w, tobi_motion_positions, surge, &err));
+    OK(tobi_world_start(w, &err));
+    for (int k = 0; tobi_world_note(w, k); k++) found += strstr(tobi_world_note(w, k), text) != NULL;
+    tobi_world_destroy(w);
+    tobi_motion_free(surge);
+    return found;
+}
+
+/* 30 mm that are read as 30 m; 4 pi^2 (1/s2) times that beside gravity. */
+static void frames_that_no_tank_bears_are_noted(void **state)
+{
+    (void)state;
+    assert_int_equal(is_noted(30, "frame presses the liquid with up to 1.18e+03 m/s2, 1.2e+02 times"), 1);
+    assert_int_equal(is_noted(0.03, "frame presses"), 0);
 }
 
 static void bad_gravity_is_refused(void **state)
@@ -389,6 +412,7 @@ static void frames_that_nothing_could_follow(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frames_that_no_tank_bears_are_noted),
         cmocka_unit_test(bad_gravity_is_refused),
         cmocka_unit_test(gravity_follows_table_and_swing),
         cmocka_unit_test(central_force_points_to_a_place),
