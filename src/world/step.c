@@ -117,6 +117,18 @@ static tobi_status look_at_drive(tobi_world *w, double max_dt, double *dt, tobi_
     }
 }
 
+/* s: without gravity, what pressures at outlets allow, which push as a weight would over the longest side. */
+static double bound_without_gravity(const tobi_world *w)
+{
+    const tobi_simulation *s = &w->sim;
+    const tobi_system *sys = &w->system[0];
+    const double d = sys->smoothing.spacing, speed = tobi_system_fall_speed(sys);
+    double longest = 0;
+    if (tobi_simulation_pull_size(s) > 0 || s->def.time_step > 0 || sys->method->solids) return INFINITY;
+    for (int a = 0; a < s->def.dimension; a++) longest = fmax(longest, sys->box.size[a]);
+    return speed > 0 ? 0.25*sqrt(2*d*longest)/speed : INFINITY;
+}
+
 /* The solid whose material allows the shortest step. */
 static int find_stiffest(const tobi_system *s)
 {
@@ -149,6 +161,7 @@ static tobi_status choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI
     if (dt < LEAST_STEP)
         return tobi_fail(err, TOBI_STALLED, "the time step would be %.3g s at t = %.9g s; allowed are %g s "
                          "or more", dt, s->time, LEAST_STEP);
+    dt = fmin(dt, bound_without_gravity(w));
     TOBI_TRY(look_at_drive(w, max_dt, &dt, err));
     TOBI_TRY(look_ahead(w, max_dt, &dt, err));
     s->dt = tobi_simulation_fit_dt(dt, max_dt);

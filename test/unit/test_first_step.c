@@ -1,5 +1,5 @@
 /* Without gravity nothing bounds the step of liquid at rest. What sets off within it is seen before it comes:
-   a body that is back after its period, gravity that swings, the frame of a tank. */
+   a body that is back after its period, gravity that swings, the frame of a tank, pressures at outlets. */
 #include "calls.h"
 #include "tobiuo/motion.h"
 #include "tobiuo/tobiuo.h"
@@ -97,12 +97,35 @@ static void a_frame_that_swings_is_seen(void **state)
     }
 }
 
+/* A pipe at rest between two outlets; 1000 Pa over it once met a step of 10 s. */
+static void pressures_at_outlets_are_seen(void **state)
+{
+    static const char *const methods[] = { "isph", "dfsph", "eisph" };
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        tobi_world *world = make_box(methods[k], 0.4);
+        for (int end = 0; end < 2; end++) {
+            tobi_outlet_def o = tobi_default_outlet_def();
+            o.name = end ? "out" : "in";
+            o.centre[0] = end ? 0.26 : 0.14;
+            o.centre[1] = 0.2;
+            o.normal[0] = end ? 1 : -1;
+            o.width = 0.4;
+            o.pressure = end ? 0 : 1000;
+            OK(tobi_world_add_outlet(world, &o, &err));
+        }
+        assert_true(find_longest(world, 0.1) < 0.03);
+        tobi_world_destroy(world);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_body_that_swings_is_seen),
         cmocka_unit_test(gravity_that_swings_is_seen),
         cmocka_unit_test(a_frame_that_swings_is_seen),
+        cmocka_unit_test(pressures_at_outlets_are_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
