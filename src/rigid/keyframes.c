@@ -54,8 +54,9 @@ struct tobi_keyframes {
 };
 
 typedef struct reader {
-    const char *what, *path;            /* "keyframes", "gravity", "flow" or "motor"   */
+    const char *what, *path;            /* "keyframes", "gravity", "flow", "motor" or "record" */
     const char *level;                  /* the name of its column, of recorded levels; else NULL */
+    char others[160];                   /* columns of a record that are not read, for messages   */
     int slides;                         /* 1: the motor of a guide                     */
     int64_t line;
     const char *separators;             /* those that the header may have, then the one that it has */
@@ -143,7 +144,15 @@ static const char *motor_columns(const reader *r)
 static tobi_status check_level_column(const reader *r, tobi_error *err)
 {
     if (r->given[LEVEL]) return TOBI_OK;
-    return fail_here(r, err, tr("there is no column of levels named "), tobi_excerpt(r->level).text);
+    return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: there is no column of levels named %s; beside the time "
+                     "there are %s", r->what, r->path, (long long)r->line, tobi_excerpt(r->level).text,
+                     r->others[0] ? r->others : tr("none"));
+}
+
+static void remember_other(reader *r, const char *field)
+{
+    const size_t used = strlen(r->others);
+    snprintf(r->others + used, sizeof r->others - used, "%s%s", used ? ", " : "", tobi_excerpt(field).text);
 }
 
 static tobi_status check_columns(const reader *r, tobi_error *err)
@@ -251,7 +260,8 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
         if (r->fields == MOST_COLUMNS)
             return fail_here(r, err, tr("more columns than are allowed, 1024"), "");
         if (text && found != OTHER) TOBI_TRY(read_unit(r, text, closing, found, &scale, err));
-        if (r->given[found]++ && found != OTHER)
+        if (found == OTHER) remember_other(r, field);
+        else if (r->given[found]++)
             return fail_here(r, err, tr("a column comes twice: "), column_names[found]);
         r->scale[r->fields] = scale;
         r->meaning[r->fields++] = found;

@@ -12,7 +12,7 @@ typedef struct tobi_probe { tobi_probe_def def; char name[104]; int body, fluid;
 
 typedef struct tobi_drive tobi_drive;
 
-/* Parts of a step at which is looked for what comes within it: no period has a share in all of them. */
+/* Parts of a step at which is looked for what comes within it: no period divides them all. */
 enum { TOBI_LOOKS = 5 };
 static const double TOBI_LOOK[TOBI_LOOKS] = { 1, 0.618, 0.382, 0.236, 0.091 };
 typedef struct tobi_motor_source tobi_motor_source;

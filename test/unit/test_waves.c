@@ -293,7 +293,8 @@ static void records_that_cannot_be_are_refused(void **state)
 {
     tobi_wave_maker_def d = make_def();
     static const struct { const char *text, *why; } bad[] = {
-        { "time,x\n0,1\n1,2\n", ":1: there is no column of levels named level" },
+        { "time,x\n0,1\n1,2\n", ":1: there is no column of levels named level; beside the time there are x" },
+        { "t\n0\n", ":1: there is no column of levels named level; beside the time there are none" },
         { "level\n0\n1\n", ":1: there is no column \"time\"" },
         { "time,level\n0,1\n0,2\n", ":3: time 0 s does not come after 0 s" },
         { "time,level\n0,a\n", ":2: \"a\" in column level is no finite number" },
