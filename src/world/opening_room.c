@@ -75,6 +75,44 @@ tobi_status tobi_openings_note_pools(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Whether an outlet with a pressure has liquid before its plane, less than that beyond it, and nothing that
+   moves it there: gravity, or its velocity. */
+static int stays_dry(const tobi_system *s, const tobi_opening *o)
+{
+    const double *g = s->sim->def.gravity;
+    int64_t before = 0, beyond = 0;
+    double out = 0;
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        const tobi_double3 *p = &s->particles.position[i];
+        const tobi_float4 *v = &s->particles.velocity[i];
+        double at[3];
+        tobi_opening_locate(o, (double[3]){ p->x, p->y, p->z }, at);
+        if (!tobi_opening_faces(o, at)) continue;
+        beyond += at[0] >= 0 && at[0] < tobi_outlet_depth(o, &s->smoothing);
+        if (at[0] >= 0 || at[0] < -s->smoothing.spacing) continue;
+        before++;
+        out += v->x*o->normal[0] + v->y*o->normal[1] + v->z*o->normal[2];
+    }
+    const int falls = g[0]*g[0] + g[1]*g[1] + g[2]*g[2] > 0;
+    return beyond < before && (falls ? out < 0 : out <= 0);
+}
+
+/* The pressure of an outlet acts by the particles beyond its plane, and new ones there are copies of them. */
+tobi_status tobi_openings_note_dry(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    char text[TOBI_NOTE];
+    for (int k = 0; k < w->sim.opening_count; k++) {
+        const tobi_opening *o = &w->sim.openings[k];
+        if (!o->gives || !stays_dry(s, o)) continue;
+        snprintf(text, sizeof text, tr("presses by the liquid beyond its plane, and none is there at the "
+                 "start: none comes in, and the pressure at the plane is 0; let the region before it reach "
+                 "%.3g m beyond the plane\n"), tobi_outlet_depth(o, &s->smoothing));
+        TOBI_TRY(tobi_world_add_notes(w, "outlet", o->name, text, err));
+    }
+    return TOBI_OK;
+}
+
 /* The name of an outlet without a pressure, or NULL. */
 static const char *find_free_outlet(const tobi_simulation *s)
 {

@@ -305,6 +305,7 @@ static tobi_status start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_note_porous(w, err));
     TOBI_TRY(tobi_world_note_scalars(w, err));
     TOBI_TRY(tobi_openings_note_pools(w, err));
+    TOBI_TRY(tobi_openings_note_dry(w, err));
     TOBI_TRY(tobi_overlap_note_solids(w, err));
     TOBI_TRY(tobi_beside_check(w, err));
     TOBI_TRY(tobi_beside_note(w, err));

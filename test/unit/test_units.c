@@ -161,6 +161,25 @@ static int count_in_scene(const char *scene, const char *text)
     return found;
 }
 
+/* Liquid that leaves the plane of a reservoir would meet no pressure there. */
+static void a_reservoir_without_liquid_is_told(void **state)
+{
+    (void)state;
+    static const struct { double from, speed, gravity; int told; } cases[] = {
+        { 0.2, 0, 0, 1 }, { 0.2, 0.5, 0, 1 }, { 0.2, -0.5, 0, 0 }, { 0.2, 0, -9.81, 0 }, { 0.2, 0.5, -9.81, 1 },
+        { 0, 0.5, 0, 0 } };
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        char text[600];
+        snprintf(text, sizeof text, "{ \"method\": \"isph\", \"dimension\": 2, \"domain\": { \"min\": [0, 0], "
+                 "\"max\": [1, 0.1] }, \"spacing\": 0.02, \"end_time\": 1, \"gravity\": [0, %g], "
+                 "\"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"velocity\": [%g, 0], \"box\": { "
+                 "\"min\": [%g, 0], \"max\": [1, 0.1] } } ] } ], \"outlets\": [ { \"name\": \"lake\", "
+                 "\"centre\": [0.2, 0.05], \"normal\": [-1, 0], \"width\": 0.1, \"pressure\": 100 } ] }",
+                 cases[k].gravity, cases[k].speed, cases[k].from);
+        assert_int_equal(count_in_scene(text, "'lake': presses by the liquid beyond its plane"), cases[k].told);
+    }
+}
+
 /* A barge, 0.2 m wide, with a draught of 0.1 m: GM is 0.0833 m less KG. Its farthest corner from a centre of
    mass 0.04 m above the keel is 0.189 m away. */
 static int count_of_barge(const char *keys, const char *text)
@@ -241,6 +260,7 @@ int main(void)
         cmocka_unit_test(a_rough_surface_is_told),
         cmocka_unit_test(a_jet_is_told),
         cmocka_unit_test(an_inlet_in_a_pool_is_told),
+        cmocka_unit_test(a_reservoir_without_liquid_is_told),
         cmocka_unit_test(ships_that_cannot_be_are_told),
         cmocka_unit_test(friction_without_a_partner_is_told),
         cmocka_unit_test(a_sudden_wave_maker_is_told),
