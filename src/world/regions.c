@@ -11,11 +11,18 @@
 #include <string.h>
 
 /* Curvature needs more neighbours than the shortest support reaches, docs/theory/surface_tension.md. */
-static tobi_status note_support(tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
+static tobi_status note_tension(tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
 {
     double support = w->system[0].smoothing.h/w->system[0].smoothing.spacing;
     char text[TOBI_NOTE];
-    if (!(def->surface_tension > 0) || support > 2.5 - 1e-6) return TOBI_OK;
+    if (!(def->surface_tension > 0)) return TOBI_OK;
+    if (w->system[0].method->rough_tension) {
+        snprintf(text, sizeof text, tr("by %s a free surface with tension gains energy: a drop at rest shakes, "
+                                       "and small ones come apart; dfsph with a support of 3 keeps it at rest\n"),
+                 w->system[0].method->name);
+        return tobi_world_add_notes(w, "fluid", def->name, text, err);
+    }
+    if (support > 2.5 - 1e-6) return TOBI_OK;
     snprintf(text, sizeof text,
              tr("surface tension needs a support of 2.5 or more (3 is better); it is %g\n"),
              support);
@@ -162,7 +169,7 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     TOBI_TRY(tobi_names_check_matter(w, "fluid", name, err));
     TOBI_TRY(tobi_mixture_add(w, def, err));
     TOBI_TRY(add_regions(w, s, "fluid", name, fills, fill_count, &volume, err));
-    const tobi_status status = note_support(w, def, err);
+    const tobi_status status = note_tension(w, def, err);
     if (status != TOBI_OK) {
         drop_regions(w, fill_count, notes);
         return status;

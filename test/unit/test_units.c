@@ -161,6 +161,22 @@ static int count_in_scene(const char *scene, const char *text)
     return found;
 }
 
+/* A drop at rest by isph gains kinetic energy. */
+static void tension_by_isph_is_told(void **state)
+{
+    (void)state;
+    static const char *const methods[] = { "dfsph", "wcsph", "isph", "eisph" };
+    for (int k = 0; k < 4; k++)
+        for (int tension = 0; tension < 2; tension++) {
+            char text[500];
+            snprintf(text, sizeof text, "{ \"method\": \"%s\", \"dimension\": 2, \"domain\": { \"min\": [0, 0], "
+                     "\"max\": [1, 1] }, \"spacing\": 0.05, \"end_time\": 1, \"fluids\": [ { \"name\": \"w\", "
+                     "\"surface_tension\": %d, \"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 0.5] } } ] "
+                     "} ], \"%s\": { \"support\": 3 } }", methods[k], tension, methods[k]);
+            assert_int_equal(count_in_scene(text, "'w': by "), tension && k > 1);
+        }
+}
+
 /* Liquid that leaves the plane of a reservoir would meet no pressure there. */
 static void a_reservoir_without_liquid_is_told(void **state)
 {
@@ -260,6 +276,7 @@ int main(void)
         cmocka_unit_test(a_rough_surface_is_told),
         cmocka_unit_test(a_jet_is_told),
         cmocka_unit_test(an_inlet_in_a_pool_is_told),
+        cmocka_unit_test(tension_by_isph_is_told),
         cmocka_unit_test(a_reservoir_without_liquid_is_told),
         cmocka_unit_test(ships_that_cannot_be_are_told),
         cmocka_unit_test(friction_without_a_partner_is_told),

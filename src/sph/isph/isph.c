@@ -486,5 +486,6 @@ const tobi_method tobi_isph = {
     .fills_pipes = 1,
     .nests = 2,
     .rough_forces = 1,
+    .rough_tension = 1,
     ISPH_VERBS
 };
