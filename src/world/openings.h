@@ -31,7 +31,8 @@ double tobi_outlet_depth(const tobi_opening *o, const tobi_smoothing_constants *
 #define TOBI_OPENING_BEHIND 3.0
 /* A note for each inlet that begins in the middle of liquid. After the fill. */
 tobi_status tobi_openings_note_pools(tobi_world *w, tobi_error *err);
-/* A note for each outlet with a level or a pressure beyond whose plane no liquid is or comes. After the fill. */
+/* A note for each outlet with a level or a pressure beyond whose plane no liquid is or comes, after the
+   fill. */
 tobi_status tobi_openings_note_dry(tobi_world *w, tobi_error *err);
 /* A note where they leave no free surface, to a method that needs one. After the fill. */
 tobi_status tobi_openings_note(tobi_world *w, tobi_error *err);

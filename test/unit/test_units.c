@@ -169,10 +169,11 @@ static void tension_by_isph_is_told(void **state)
     for (int k = 0; k < 4; k++)
         for (int tension = 0; tension < 2; tension++) {
             char text[500];
-            snprintf(text, sizeof text, "{ \"method\": \"%s\", \"dimension\": 2, \"domain\": { \"min\": [0, 0], "
-                     "\"max\": [1, 1] }, \"spacing\": 0.05, \"end_time\": 1, \"fluids\": [ { \"name\": \"w\", "
-                     "\"surface_tension\": %d, \"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 0.5] } } ] "
-                     "} ], \"%s\": { \"support\": 3 } }", methods[k], tension, methods[k]);
+            snprintf(text, sizeof text, "{ \"method\": \"%s\", \"dimension\": 2, "
+                     "\"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.05, \"end_time\": 1, "
+                     "\"fluids\": [ { \"name\": \"w\", \"surface_tension\": %d, "
+                     "\"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 0.5] } } ] } ], "
+                     "\"%s\": { \"support\": 3 } }", methods[k], tension, methods[k]);
             assert_int_equal(count_in_scene(text, "'w': by "), tension && k > 1);
         }
 }
@@ -182,17 +183,17 @@ static void a_reservoir_without_liquid_is_told(void **state)
 {
     (void)state;
     static const struct { double from, speed, gravity; int told; } cases[] = {
-        { 0.2, 0, 0, 1 }, { 0.2, 0.5, 0, 1 }, { 0.2, -0.5, 0, 0 }, { 0.2, 0, -9.81, 0 }, { 0.2, 0.5, -9.81, 1 },
-        { 0, 0.5, 0, 0 } };
+        { 0.2, 0, 0, 1 }, { 0.2, 0.5, 0, 1 }, { 0.2, -0.5, 0, 0 }, { 0.2, 0, -9.81, 0 },
+        { 0.2, 0.5, -9.81, 1 }, { 0, 0.5, 0, 0 } };
     for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
         char text[600];
-        snprintf(text, sizeof text, "{ \"method\": \"isph\", \"dimension\": 2, \"domain\": { \"min\": [0, 0], "
-                 "\"max\": [1, 0.1] }, \"spacing\": 0.02, \"end_time\": 1, \"gravity\": [0, %g], "
+        snprintf(text, sizeof text, "{ \"method\": \"isph\", \"dimension\": 2, \"spacing\": 0.02, "
+                 "\"domain\": { \"min\": [0, 0], \"max\": [1, 0.1] }, \"end_time\": 1, \"gravity\": [0, %g], "
                  "\"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"velocity\": [%g, 0], \"box\": { "
                  "\"min\": [%g, 0], \"max\": [1, 0.1] } } ] } ], \"outlets\": [ { \"name\": \"lake\", "
                  "\"centre\": [0.2, 0.05], \"normal\": [-1, 0], \"width\": 0.1, \"pressure\": 100 } ] }",
                  cases[k].gravity, cases[k].speed, cases[k].from);
-        assert_int_equal(count_in_scene(text, "'lake': presses by the liquid beyond its plane"), cases[k].told);
+        assert_int_equal(count_in_scene(text, "'lake': presses by the liquid beyond"), cases[k].told);
     }
 }
 
