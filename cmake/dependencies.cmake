@@ -32,6 +32,8 @@ tobi_need(lz4 liblz4-dev liblz4)
 tobi_need(libmd libmd-dev libmd)
 tobi_need(libpng libpng-dev libpng)
 tobi_need(libjpeg libjpeg-dev libjpeg)
+tobi_need(freetype libfreetype-dev freetype2)
+tobi_need(fontconfig libfontconfig-dev fontconfig)
 
 find_package(OpenMP QUIET COMPONENTS C)
 if(NOT OpenMP_C_FOUND)

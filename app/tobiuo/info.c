@@ -1,5 +1,6 @@
 /* tobiuo info: what a report of a fault should begin with. */
 #include "app.h"
+#include "tobiuo/overlay.h"
 #include <assimp/version.h>
 #include <hdf5.h>
 #include <jansson.h>
@@ -52,6 +53,14 @@ static void print_libraries(void)
            LUAJIT_VERSION, zlibVersion(), LZ4_versionString(), png_get_libpng_ver(NULL), JPEG_LIB_VERSION);
 }
 
+static void print_font(void)
+{
+    tobi_letters *letters = tobi_letters_open();
+    printf("letters       %s\n", letters ? tobi_letters_font(letters) :
+           "none: the system has no font, pictures have no text (Debian: fonts-dejavu-core)");
+    tobi_letters_close(letters);
+}
+
 const struct argp info_argp = { .doc = "Version, machine, libraries, methods." };
 
 int tobiuo_info(int argc, char **argv)
@@ -66,6 +75,7 @@ int tobiuo_info(int argc, char **argv)
     print_processor();
     print_instruction_sets();
     print_libraries();
+    print_font();
     const char *method;
     printf("methods      ");
     for (int k = 0; (method = tobi_method_name(k)); k++) printf(" %s", method);

@@ -50,10 +50,10 @@ static void read_whole(viewer *v, graph *g)
                                                           { NULL, NULL } };
     table t = { 0 };
     if (read_file(v, "history.csv", &t) != 0) return;
-    snprintf(g->title, sizeof g->title, "%s", window_text(TEXT("energy, J")));
+    snprintf(g->title, sizeof g->title, "%s", window_text(v, TEXT("energy, J")));
     g->curves = 2;
-    g->label[0] = window_text(TEXT("kinetic"));
-    g->label[1] = window_text(TEXT("elastic"));
+    g->label[0] = window_text(v, TEXT("kinetic"));
+    g->label[1] = window_text(v, TEXT("elastic"));
     fill(g, &t, NULL, columns);
     table_free(&t);
 }
@@ -75,7 +75,7 @@ static int read_body(viewer *v, graph *g, int number)
         return -1;
     }
     const char *name = t.cells[row*(size_t)t.columns + (size_t)names];
-    snprintf(g->title, sizeof g->title, window_text(TEXT("force on %.100s, N")), name);
+    snprintf(g->title, sizeof g->title, window_text(v, TEXT("force on %.100s, N")), name);
     g->curves = v->def.looks.dimension;
     g->label[0] = "x";
     g->label[1] = "y";

@@ -3,7 +3,6 @@
 #define _GNU_SOURCE 1
 #include "viewer.h"
 #include "keys.h"
-#include "letters.h"
 #include "../tobiuo/app.h"
 #include <math.h>
 #include <stdarg.h>
@@ -15,11 +14,11 @@ void viewer_note(viewer *v, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    vsnprintf(v->note, sizeof v->note, window_text(format), args);
+    vsnprintf(v->note, sizeof v->note, window_text(v, format), args);
     va_end(args);
-    if (!letters_have(v->note) && v->screen) {
+    if (!tobi_letters_have(v->letters, v->note) && v->screen) {
         complain("%s", v->note);
-        snprintf(v->note, sizeof v->note, "%s", window_text(TEXT("told on the terminal")));
+        snprintf(v->note, sizeof v->note, "%s", window_text(v, TEXT("told on the terminal")));
     }
     v->changed = 1;
 }

@@ -2,7 +2,6 @@
    are in pixels, small on screens of very fine pixels. */
 #define _GNU_SOURCE 1
 #include "keys.h"
-#include "letters.h"
 #include "tobiuo/overlay.h"
 #include "tobiuo/tobiuo.h"
 #include <math.h>
@@ -24,10 +23,10 @@ static const char *unit_of(const char *field)
 
 static const char *state_of(const viewer *v)
 {
-    if (!v->def.live) return v->playing ? window_text(TEXT("plays")) : "";
-    if (live_has_ended(v->def.live)) return window_text(TEXT("the run has ended"));
-    if (v->shown < v->outputs) return window_text(TEXT("an earlier output; > shows the present"));
-    return v->paused ? window_text(TEXT("paused")) : window_text(TEXT("runs"));
+    if (!v->def.live) return v->playing ? window_text(v, TEXT("plays")) : "";
+    if (live_has_ended(v->def.live)) return window_text(v, TEXT("the run has ended"));
+    if (v->shown < v->outputs) return window_text(v, TEXT("an earlier output; > shows the present"));
+    return v->paused ? window_text(v, TEXT("paused")) : window_text(v, TEXT("runs"));
 }
 
 static void draw_head(const viewer *v, const canvas *c)
@@ -35,13 +34,13 @@ static void draw_head(const viewer *v, const canvas *c)
     char text[200];
     const look *l = &v->look;
     snprintf(text, sizeof text, "t = %.5g s", v->moment ? moment_of(v->moment)->time : 0);
-    float x = 16 + letters_write(c, 16, 28, 12, text, ink) + 16;
-    x += letters_write(c, x, 28, SIZE, state_of(v), grey) + 16;
-    if (v->recording) letters_write(c, x, 28, SIZE, window_text(TEXT("recording")), mark);
+    float x = 16 + tobi_overlay_text(c, 16, 28, 12, text, ink) + 16;
+    x += tobi_overlay_text(c, x, 28, SIZE, state_of(v), grey) + 16;
+    if (v->recording) tobi_overlay_text(c, x, 28, SIZE, window_text(v, TEXT("recording")), mark);
     if (l->clip_axis < 0) return;
-    snprintf(text, sizeof text, window_text(TEXT("clip: %c %s %.4g m")), "xyz"[l->clip_axis],
+    snprintf(text, sizeof text, window_text(v, TEXT("clip: %c %s %.4g m")), "xyz"[l->clip_axis],
              l->clip_below ? ">" : "<", l->clip);
-    letters_write(c, 16, 50, SIZE, text, ink);
+    tobi_overlay_text(c, 16, 50, SIZE, text, ink);
 }
 
 static int64_t row_of(const tobi_moment *m, int64_t id)
@@ -77,10 +76,9 @@ static void draw_colors(const viewer *v, const canvas *c)
     }
     const int x = right - 90;
     char text[160], label[160];
-    const char *unit = unit_of(v->look.field);
     if (!*v->look.field) return;
-    snprintf(label, sizeof label, "%s%s%s", v->look.field, *unit ? ", " : "", unit);
-    const float left = fminf((float)x, (float)right - letters_width(SIZE, label) - 8);
+    tobi_field_label(v->look.field, label, sizeof label);
+    const float left = fminf((float)x, (float)right - tobi_overlay_text_width(c, SIZE, label) - 8);
     tobi_overlay_box(c, (int)left - 8, y - 32, right - (int)left + 8, HIGH + 48, paper, 0.75f);
     for (int step = 0; step < HIGH; step++) {
         float color[3];
@@ -93,9 +91,9 @@ static void draw_colors(const viewer *v, const canvas *c)
         const float at = (float)(y + HIGH - k*(HIGH - 1)/4);
         snprintf(text, sizeof text, "%.4g", v->look.low + k*(v->look.high - v->look.low)/4);
         tobi_overlay_line(c, (float)(x + WIDE), at, (float)(x + WIDE + 4), at, 1, ink);
-        letters_write(c, (float)(x + WIDE + 7), at + 4, SIZE, text, ink);
+        tobi_overlay_text(c, (float)(x + WIDE + 7), at + 4, SIZE, text, ink);
     }
-    letters_write(c, left, (float)y - 12, SIZE, label, ink);
+    tobi_overlay_text(c, left, (float)y - 12, SIZE, label, ink);
 }
 
 static void draw_time_line(const viewer *v, const canvas *c)
@@ -151,20 +149,20 @@ static void draw_graph(const viewer *v, const canvas *c)
     char text[64];
     if (v->graph_number < 0 || g->count < 2 || !(f.end > 0)) return;
     tobi_overlay_box(c, (int)f.x - 54, (int)f.y - 32, (int)f.wide + 70, (int)f.high + 44, paper, 0.75f);
-    float x = f.x + letters_write(c, f.x, f.y - 14, SIZE, g->title, ink) + 12;
+    float x = f.x + tobi_overlay_text(c, f.x, f.y - 14, SIZE, g->title, ink) + 12;
     for (int k = 0; k < g->curves; k++) {
         int any = 0;
         for (size_t i = 0; i < g->count && !any; i++) any = g->value[k][i] != 0;
         if (!any) continue;
         draw_curve(c, g, &f, k);
-        x += letters_write(c, x, f.y - 14, SIZE, g->label[k], curve_colors[k]) + 8;
+        x += tobi_overlay_text(c, x, f.y - 14, SIZE, g->label[k], curve_colors[k]) + 8;
     }
     for (int k = 0; k <= 2; k++) {
         const float y = f.y + f.high*(float)k/2;
         tobi_overlay_line(c, f.x, y, f.x + f.wide, y, 0.5f, grey);
         const double value = f.top - k*(f.top - f.low)/2;
         snprintf(text, sizeof text, "%.3g", fabs(value) < 1e-3*(f.top - f.low) ? 0 : value);
-        letters_write(c, f.x - 6 - letters_width(8, text), y + 4, 8, text, ink);
+        tobi_overlay_text(c, f.x - 6 - tobi_overlay_text_width(c, 8, text), y + 4, 8, text, ink);
     }
     if (v->moment) {
         const float at = f.x + f.wide*(float)(moment_of(v->moment)->time/f.end);
@@ -181,12 +179,12 @@ static void mark_particle(const viewer *v, const canvas *c, const double point[3
     const float x = (float)pixel[0], y = (float)pixel[1];
     tobi_overlay_line(c, x - 9, y, x + 9, y, 1.6f, mark);
     tobi_overlay_line(c, x, y - 9, x, y + 9, 1.6f, mark);
-    letters_write(c, x + 10, y - 4, SIZE, number == 0 ? "1" : "2", mark);
+    tobi_overlay_text(c, x + 10, y - 4, SIZE, number == 0 ? "1" : "2", mark);
 }
 
 static int write_row(const viewer *v, const canvas *c, int line, const char *text)
 {
-    letters_write(c, (float)(v->width - LEGEND_WIDTH - 10), (float)(40 + LINE*line), SIZE, text, ink);
+    tobi_overlay_text(c, (float)(v->width - LEGEND_WIDTH - 10), (float)(40 + LINE*line), SIZE, text, ink);
     return line + 1;
 }
 
@@ -195,10 +193,10 @@ static int write_particle(const viewer *v, const canvas *c, const tobi_moment *m
 {
     char text[200];
     const double *p = m->positions[i];
-    snprintf(text, sizeof text, window_text(TEXT("%d  particle %lld")), number + 1,
+    snprintf(text, sizeof text, window_text(v, TEXT("%d  particle %lld")), number + 1,
              (long long)(v->picks[number]%NEST_PICK));
     line = write_row(v, c, line, text);
-    snprintf(text, sizeof text, window_text(TEXT("position %.5g %.5g %.5g m")), p[0], p[1], p[2]);
+    snprintf(text, sizeof text, window_text(v, TEXT("position %.5g %.5g %.5g m")), p[0], p[1], p[2]);
     line = write_row(v, c, line, text);
     for (int k = 0; k < m->field_count; k++) {
         const tobi_moment_field *f = &m->fields[k];
@@ -229,7 +227,7 @@ static void draw_picks(const viewer *v, const canvas *c)
     if (count < 2) return;
     const double *a = m->positions[row[0]], *b = m->positions[row[1]];
     char text[120];
-    snprintf(text, sizeof text, window_text(TEXT("distance %.6g m")),
+    snprintf(text, sizeof text, window_text(v, TEXT("distance %.6g m")),
              sqrt((a[0] - b[0])*(a[0] - b[0]) + (a[1] - b[1])*(a[1] - b[1]) +
                                                         (a[2] - b[2])*(a[2] - b[2])));
     write_row(v, c, line, text);
@@ -246,8 +244,8 @@ static void draw_help(const viewer *v, const canvas *c)
     for (const key_row *k = key_rows; k->key >= 0; k++) {
         if (!k->name) continue;
         const float at = (float)(y + 28 + LINE*line++);
-        letters_write(c, (float)x + 20, at, SIZE, window_text(k->name), now);
-        letters_write(c, (float)x + 150, at, SIZE, window_text(k->does), ink);
+        tobi_overlay_text(c, (float)x + 20, at, SIZE, window_text(v, k->name), now);
+        tobi_overlay_text(c, (float)x + 150, at, SIZE, window_text(v, k->does), ink);
     }
 }
 
@@ -255,21 +253,22 @@ static void draw_question(const viewer *v, const canvas *c)
 {
     const int x = (v->width - 520)/2, y = v->height/2 - 30;
     tobi_overlay_box(c, x, y, 520, 60, paper, 0.95f);
-    letters_write(c, (float)x + 20, (float)y + 25, SIZE + 1, window_text(TEXT("Close. And the run?")), ink);
-    letters_write(c, (float)x + 20, (float)y + 46, SIZE,
-                      window_text(TEXT("Enter or g: it goes on.  s: it stops.  another key: back")),
+    const float left = (float)x + 20;
+    tobi_overlay_text(c, left, (float)y + 25, SIZE + 1, window_text(v, TEXT("Close. And the run?")), ink);
+    tobi_overlay_text(c, left, (float)y + 46, SIZE,
+                      window_text(v, TEXT("Enter or g: it goes on.  s: it stops.  another key: back")),
                       now);
 }
 
 void draw_legend(viewer *v)
 {
-    const canvas c = { v->pixels, v->width, v->height };
+    const canvas c = { v->pixels, v->width, v->height, v->letters };
     draw_head(v, &c);
     draw_colors(v, &c);
     draw_time_line(v, &c);
     draw_graph(v, &c);
     draw_picks(v, &c);
-    letters_write(&c, 20, (float)v->height - 38, SIZE, v->note, grey);
+    tobi_overlay_text(&c, 20, (float)v->height - 38, SIZE, v->note, grey);
     if (v->help) draw_help(v, &c);
     if (v->asks) draw_question(v, &c);
 }

@@ -36,7 +36,7 @@ void take_shot(viewer *v)
     char *path = free_name(v, ".png");
     v->wants_shot = 0;
     if (path && write_png(path, v->pixels, v->width, v->height) == 0) viewer_note(v, "%.280s", path);
-    else viewer_note(v, TEXT("cannot write %.260s"), path ? path : window_text(TEXT("a screenshot")));
+    else viewer_note(v, TEXT("cannot write %.260s"), path ? path : window_text(v, TEXT("a screenshot")));
     free(path);
 }
 
@@ -54,7 +54,7 @@ void record_picture(viewer *v)
         v->recorded++;
         v->kept = v->painted;
     } else {
-        viewer_note(v, TEXT("cannot write %.260s"), path ? path : window_text(TEXT("a picture")));
+        viewer_note(v, TEXT("cannot write %.260s"), path ? path : window_text(v, TEXT("a picture")));
     }
     free(path);
 }

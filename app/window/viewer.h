@@ -4,6 +4,7 @@
 #include "window.h"
 #include "../tobiuo/language.h"
 #include "../tobiuo/table.h"
+#include "tobiuo/overlay.h"
 #include <stdio.h>
 
 enum { PICKS = 2, GRAPH_CURVES = 3 };
@@ -45,6 +46,7 @@ typedef struct viewer {
     const char *keys;                   /* of def.keys, those to come                             */
     unsigned char *pixels;              /* of the window, width x height x 3                      */
     int width, height;
+    tobi_letters *letters;              /* NULL: the system has no font                           */
 } viewer;
 
 /* keys.c: what events do. */
@@ -58,7 +60,7 @@ void time_line_place(const viewer *v, int *x, int *y, int *width, int *height);
 double viewer_end(const viewer *v);
 
 /* window.c: the text in the language of the user, if there are letters for it. */
-const char *window_text(const char *english) __attribute__((format_arg(1)));
+const char *window_text(const viewer *v, const char *english) __attribute__((format_arg(2)));
 
 /* record.c: pictures and movies of the window. */
 void take_shot(viewer *v);

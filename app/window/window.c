@@ -3,7 +3,6 @@
    is drawn whole. Drawback: three threads share the cores with the steps of a run. */
 #define _GNU_SOURCE 1
 #include "viewer.h"
-#include "letters.h"
 #include "../tobiuo/app.h"
 #include <math.h>
 #include <stdlib.h>
@@ -192,10 +191,10 @@ static void close_viewer(viewer *v)
     if (v->screen) screen_close(v->screen);
 }
 
-const char *window_text(const char *english)
+const char *window_text(const viewer *v, const char *english)
 {
     const char *text = tr(english);
-    return letters_have(text) ? text : english;
+    return tobi_letters_have(v->letters, text) ? text : english;
 }
 
 /* A run that Ctrl-C or SIGTERM stopped takes its window with it. */
@@ -207,12 +206,12 @@ static int is_stopped(const viewer *v)
 int window_show(const window_def *def)
 {
     viewer v = { .def = *def, .factor = 4, .dirty = 1, .changed = 1, .keys = def->keys, .graph_number = 0,
-                 .picks = { -1, -1 }, .look = { .clip_axis = -1, .alone = def->alone } };
-    letters_open();
+                 .letters = tobi_letters_open(), .picks = { -1, -1 },
+                 .look = { .clip_axis = -1, .alone = def->alone } };
     const int code = open_viewer(&v);
     if (code == 0) viewer_note(&v, TEXT("h: keys"));
     while (code == 0 && !v.ends && !is_stopped(&v)) turn(&v);
     close_viewer(&v);
-    letters_close();
+    tobi_letters_close(v.letters);
     return code;
 }

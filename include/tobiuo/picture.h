@@ -125,8 +125,8 @@ typedef struct tobi_picture {
     const uint8_t *foam_kind;          /* TOBI_SPRAY, TOBI_FOAM, TOBI_BUBBLE of tobiuo/foam.h           */
 
     float background_top[3], background_bottom[3];   /* sRGB */
-    const char *title;                 /* ASCII, upper left, "t = 0.25 s"; NULL = none                  */
-    const char *label;                 /* ASCII, of the colour bar, "speed [m/s]"; NULL = no bar        */
+    const char *title;                 /* UTF-8, upper left, "t = 0.25 s"; NULL = none                  */
+    const char *label;                 /* UTF-8, of the colour bar, "speed [m/s]"; NULL = no bar        */
 
     int threads;                       /* 0 = all cores; any number gives the same picture              */
     double *stage_seconds;             /* NULL, or gets TOBI_PICTURE_STAGES times of the process, s     */

@@ -277,6 +277,9 @@ TOBI_API const char *tobi_world_field_name(int field, int *components, const cha
 /* The field that a name tells, whole or by a component: "velocity", "velocity_x", "stress_zx". component: its
    number, -1 of the whole. NULL: there is no such field; component and unit may be NULL. */
 TOBI_API const char *tobi_world_find_field(const char *name, int *component, const char **unit);
+/* Writes what a picture calls a field or component of one, or "speed", in the language of tobi_set_language:
+   "velocity_x [m/s]". Any other name is written as it is. */
+TOBI_API void tobi_field_label(const char *name, char *text, size_t size);
 /* The names of the fields of a method by index, of all fields if it is unknown; NULL past the end. */
 TOBI_API const char *tobi_method_field(const char *method, int index);
 /* 1 if the particles of bodies have the field, by the number of tobi_world_field_name. */

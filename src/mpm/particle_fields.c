@@ -1,5 +1,6 @@
 /* The fields of the material point method: how they start, what of them is shown in results. Drawback: volume
    and mass of a particle hide in unused components of its strain. */
+#include "base/language.h"
 #include "mpm/particle_fields.h"
 #include "mpm/contact/clamp.h"
 
@@ -8,11 +9,12 @@ static const tobi_field fields[] = { MPM_FIELDS(ROW) };
 const tobi_field_list mpm_field_list = { fields, sizeof fields/sizeof *fields, sizeof(mpm_fields) };
 
 const tobi_output mpm_outputs[] = {
-    { "material", 1, "1", 0 },      { "von_mises", 1, "Pa", 0 },           { "stress", 6, "Pa", 0 },
-    { "J", 1, "1", 0 },             { "deformation_gradient", 9, "1", 0 }, { "plastic", 1, "1", 0 },
-    { "rest_position", 3, "m", 0 }, { "piece", 1, "1", 0 },                { "cut_side", 1, "1", 0 },
-    { "damage", 1, "1", 0 },        { "texture_coordinates", 2, "1", 0 },  { "part", 1, "1", 0 },
-    { NULL, 0, NULL, 0 } };
+    { TR("material"), 1, "1", 0 }, { TR("von_mises"), 1, "Pa", 0 }, { TR("stress"), 6, "Pa", 0 },
+    { "J", 1, "1", 0 }, { TR("deformation_gradient"), 9, "1", 0 }, { TR("plastic"), 1, "1", 0 },
+    { TR("rest_position"), 3, "m", 0 }, { TR("piece"), 1, "1", 0 }, { TR("cut_side"), 1, "1", 0 },
+    { TR("damage"), 1, "1", 0 }, { TR("texture_coordinates"), 2, "1", 0 },
+    { TR("part"), 1, "1", 0 }, { NULL, 0, NULL, 0 }
+};
 
 unsigned mpm_needs(const tobi_system *s, int full)
 {

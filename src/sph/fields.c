@@ -1,5 +1,6 @@
 /* The fields of the SPH methods and what of them is shown in results. Drawback: dfsph and wcsph have the same
    list, though wcsph needs less of it. */
+#include "base/language.h"
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
 #include "sph/openings.h"
@@ -11,9 +12,11 @@ static const tobi_field fields[] = { SPH_FIELDS(ROW) };
 const tobi_field_list sph_field_list = { fields, sizeof fields/sizeof *fields, sizeof(sph_fields) };
 
 const tobi_output sph_outputs[] = {
-    { "acceleration", 3, "m/s2", 1 }, { "vorticity", 3, "1/s", 1 }, { "surface", 1, "1", 0 },
-    { "apparent_viscosity", 1, "Pa s", 1 }, { "material", 1, "1", 0 },
-    { "temperature", 1, "degC", 0 }, { "concentration", 1, "1", 0 }, { NULL, 0, NULL, 0 } };
+    { TR("acceleration"), 3, "m/s2", 1 }, { TR("vorticity"), 3, "1/s", 1 },
+    { TR("surface"), 1, "1", 0 }, { TR("apparent_viscosity"), 1, "Pa s", 1 },
+    { TR("material"), 1, "1", 0 }, { TR("temperature"), 1, "degC", 0 },
+    { TR("concentration"), 1, "1", 0 }, { NULL, 0, NULL, 0 }
+};
 
 unsigned sph_needs(const tobi_system *s, int full)
 {

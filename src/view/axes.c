@@ -63,7 +63,7 @@ float view_axis_room(const canvas *c, const tobi_picture *f, int axis)
     char text[32];
     for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
         view_write_tick(v, step, text);
-        widest = fmaxf(widest, view_text_width(text, unit));
+        widest = fmaxf(widest, view_text_width(c, text, unit));
     }
     return widest + 8*unit;
 }
@@ -82,7 +82,7 @@ static void draw_ticks(canvas *c, const tobi_picture *f, const edge *e, float wa
         const float to[2] = { s.x + 4*unit*way[0], s.y + 4*unit*way[1] };
         view_draw_stroke(c, (float[2]){ s.x, s.y }, to, 1.2f, ink);
         view_write_tick(v, step, text);
-        const float wide = view_text_width(text, unit);
+        const float wide = view_text_width(c, text, unit);
         const float beside = way[0] < -0.5f ? -wide - 2*unit : way[0] > 0.5f ? 2*unit : -0.5f*wide;
         const float x = clampf(to[0] + beside, 2, (float)c->width - wide);
         const float y = to[1] + (way[1] > 0.5f ? 9*unit : 3*unit);
@@ -96,7 +96,7 @@ static void draw_name(canvas *c, const edge *e, const float way[2], labels *l)
     const vec ink = { 0.02f, 0.03f, 0.05f };
     char text[8];
     snprintf(text, sizeof text, "%c [m]", "xyz"[e->axis]);
-    const float wide = view_text_width(text, unit), lowest = (float)c->height - 2*unit;
+    const float wide = view_text_width(c, text, unit), lowest = (float)c->height - 2*unit;
     const float most = lowest - 25*unit*way[1] - 3*unit;
     /* Along the edge: its middle, or where numbers are rare if there is no room below them. */
     const float t = 0.5f*(e->a.y + e->b.y) > most ? 0.72f : 0.5f;

@@ -112,6 +112,7 @@ typedef struct canvas {
     vec    *inside;              /* of things with an image: the colour of cuts                    */
     int     mesh_count;
     float   clarity;             /* m after which 1/e of the light is left in water                */
+    struct tobi_letters *letters;   /* NULL: the picture has no text                               */
 } canvas;
 
 static inline vec view_point(const camera *c, const double p[3])
@@ -334,11 +335,17 @@ static inline vec view_scaled(const vec *scale, float t)
     return scale[(int)(clampf(t, 0, 1)*SCALE_STEPS + 0.5f)];
 }
 
-/* text.c: a letter as strokes on a small grid, and how many of its steps the next letter is away. */
-const char *view_letter_strokes(char letter);
-int view_letter_advance(char letter);
-float view_letter_unit(const canvas *c);                 /* pixels of such a step */
-float view_text_width(const char *text, float unit);
+/* letters.c: false: no memory. NULL letters: the system has no font. */
+bool view_open_letters(struct tobi_letters **letters);
+/* Paints the covered pixels of a text (UTF-8), each with the share that is covered, and returns its
+   width. x, y: left end of the baseline; size: height of capitals. paint NULL: measures only. */
+typedef void view_paint_pixel(void *user, int x, int y, float share);
+float view_walk_letters(struct tobi_letters *l, float x, float y, float size, const char *text,
+                        view_paint_pixel *paint, void *user);
+
+/* text.c */
+float view_letter_unit(const canvas *c);                 /* pixels of a sixth of a capital's height */
+float view_text_width(const canvas *c, const char *text, float unit);
 void view_draw_stroke(canvas *c, const float a[2], const float b[2], float pen, vec color);
 void view_draw_text(canvas *c, float x, float y, float unit, const char *text, vec color);
 double view_tick_step(double range);

@@ -298,7 +298,7 @@ static void take_bodies(tobi_drawing *d)
 /* Range and label of the colours of a field, or of the speed. */
 static void set_range(tobi_drawing *d)
 {
-    const char *name = d->view->field ? d->view->field : "speed", *unit = "m/s";
+    const char *name = d->view->field ? d->view->field : "speed";
     double low = d->view->min, high = d->view->max;
     if (!(low < high)) {
         low = INFINITY, high = -INFINITY;
@@ -316,9 +316,7 @@ static void set_range(tobi_drawing *d)
     }
     d->picture.value_min = low;
     d->picture.value_max = high;
-    if (d->view->field && !tobi_world_find_field(name, NULL, &unit)) unit = NULL;
-    const int bare = !unit || strcmp(unit, "1") == 0;
-    snprintf(d->label, sizeof d->label, bare ? "%s" : "%s [%s]", name, unit);
+    tobi_field_label(name, d->label, sizeof d->label);
     d->picture.label = d->label;
 }
 
@@ -424,7 +422,8 @@ static void set_picture(tobi_drawing *d)
     /* Water in 3-D looks like water; what else has no colour of its own shows its speed. */
     const int natural = s->dimension == 3 && !d->has_palette && !solids;
     if (natural) p->values = NULL;
-    p->label = d->has_palette || natural ? NULL : "speed [m/s]";
+    tobi_field_label("speed", d->label, sizeof d->label);
+    p->label = d->has_palette || natural ? NULL : d->label;
 }
 
 static tobi_status make(tobi_drawing *d, tobi_error *err)

@@ -5,9 +5,6 @@
 #include "view/draw.h"
 #include <math.h>
 
-/* Capitals are six steps of the grid high. */
-static const float CAPITALS = 6;
-
 static void mix_pixel(const tobi_overlay *o, int x, int y, const uint8_t color[3], float share)
 {
     uint8_t *at = o->rgb + 3*((size_t)y*(size_t)o->width + (size_t)x);
@@ -42,35 +39,23 @@ void tobi_overlay_line(const tobi_overlay *o, float x0, float y0, float x1, floa
         }
 }
 
-static float draw_letter(const tobi_overlay *o, float x, float y, float unit, char letter,
-                         const uint8_t color[3])
+typedef struct brush { const tobi_overlay *o; const uint8_t *color; } brush;
+
+static void mix_letter(void *user, int x, int y, float share)
 {
-    float last[2] = { 0, 0 };
-    int points = 0;
-    for (const char *s = view_letter_strokes(letter); *s; s += *s == ' ' ? 1 : 2) {
-        if (*s == ' ') {
-            points = 0;
-            continue;
-        }
-        const float at[2] = { x + (float)(s[0] - '0')*unit, y - (float)(s[1] - '0' - 2)*unit };
-        if (points++ > 0) tobi_overlay_line(o, last[0], last[1], at[0], at[1], 0.85f*unit, color);
-        last[0] = at[0];
-        last[1] = at[1];
-    }
-    return x + (float)view_letter_advance(letter)*unit;
+    const brush *b = user;
+    tobi_overlay_box(b->o, x, y, 1, 1, b->color, share);
 }
 
 float tobi_overlay_text(const tobi_overlay *o, float x, float y, float size, const char *text,
                         const uint8_t color[3])
 {
-    const float from = x, unit = size/CAPITALS;
-    for (; text && *text; text++) x = draw_letter(o, x, y, unit, *text, color);
-    return x - from;
+    brush b = { o, color };
+    if (!o || !color) return 0;
+    return view_walk_letters(o->letters, x, y, size, text, mix_letter, &b);
 }
 
-float tobi_overlay_text_width(float size, const char *text)
+float tobi_overlay_text_width(const tobi_overlay *o, float size, const char *text)
 {
-    float width = 0;
-    for (; text && *text; text++) width += (float)view_letter_advance(*text)*size/CAPITALS;
-    return width;
+    return !o ? 0 : view_walk_letters(o->letters, 0, 0, size, text, NULL, NULL);
 }

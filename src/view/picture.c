@@ -2,6 +2,7 @@
    over one canvas in memory. Drawback: everything is drawn on the processor. */
 #define _GNU_SOURCE 1
 #include "view/draw.h"
+#include "tobiuo/overlay.h"
 #include "view/skin.h"
 #include "view/streamlines.h"
 #include <inttypes.h>
@@ -138,6 +139,7 @@ static void free_scene(scene *s)
     free(s->c.covered);
     free(s->c.shadow.depth);
     free(s->c.shadow.range);
+    tobi_letters_close(s->c.letters);
     view_geometry_free(&s->solids);
     view_geometry_free(&s->water);
     view_geometry_free(&s->drops);
@@ -197,6 +199,7 @@ static tobi_status make_canvas(scene *s, tobi_error *err)
     double size = 0;
     for (int k = 0; k < 3; k++) size += (f->box_max[k] - f->box_min[k])*(f->box_max[k] - f->box_min[k]);
     c->clarity = f->clarity > 0 ? (float)f->clarity : (float)(0.16*sqrt(size));
+    if ((f->title || f->label || f->axes) && !view_open_letters(&c->letters)) return no_memory(f, err);
     TOBI_TRY(take_images(s, err));
     const size_t n = (size_t)c->width*(size_t)c->height;
     c->color = malloc(n*sizeof *c->color);

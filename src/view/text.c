@@ -1,61 +1,15 @@
-/* Letters as strokes on a small grid, drawn with round pens; a title and a colour bar. */
+/* Texts of a picture: its title and its colour bar. */
 #define _GNU_SOURCE 1
 #include "view/draw.h"
 #include <stdio.h>
 #include <string.h>
 
-/* Points are two digits, x to the right and y up: baseline 2, small letters to 6, capitals to 8,
-   tails to 0. A space lifts the pen. */
-static const char *const strokes[128] = {
-    ['0'] = "123243473818070312", ['1'] = "172822 1232", ['2'] = "07183847460242",
-    ['3'] = "07183847463515 354443321203", ['4'] = "32380444", ['5'] = "480805354443321203",
-    ['6'] = "473818070312324344351504", ['7'] = "084812",
-    ['8'] = "15060718384746351504031232434435", ['9'] = "031232434738180706153546",
-    ['a'] = "4332120305163645 4642", ['b'] = "0802 0312324345361605", ['c'] = "4536160503123243",
-    ['d'] = "4842 4332120305163645", ['e'] = "04444536160503123243", ['f'] = "38281712 0636",
-    ['g'] = "4332120305163645 46413010", ['h'] = "0802 0516364542", ['i'] = "0602 0808",
-    ['j'] = "161100 1818", ['k'] = "0802 3603 1432", ['l'] = "0802",
-    ['m'] = "0602 0516263532 3546566562", ['n'] = "0602 0516364542", ['o'] = "123243453616050312",
-    ['p'] = "0600 0312324345361605", ['q'] = "4640 4332120305163645", ['r'] = "0602 051636",
-    ['s'] = "45361605143443321203", ['t'] = "18132232 0636", ['u'] = "0603123243 4642",
-    ['v'] = "062246", ['w'] = "0612355266", ['x'] = "0642 4602", ['y'] = "0622 4610",
-    ['z'] = "06460242", ['A'] = "022842 1434", ['B'] = "02083847463505 3544433202",
-    ['C'] = "4738180703123243", ['D'] = "02082846442202", ['E'] = "48080242 0535",
-    ['F'] = "480802 0535", ['G'] = "47381807031232434525", ['H'] = "0208 4248 0545", ['I'] = "0208",
-    ['J'] = "3833221203", ['K'] = "0208 4804 1542", ['L'] = "080242", ['M'] = "0208346862",
-    ['N'] = "02084248", ['O'] = "123243473818070312", ['P'] = "02083847463505",
-    ['Q'] = "123243473818070312 2442", ['R'] = "02083847463505 2542",
-    ['S'] = "473818070615354443321203", ['T'] = "0848 2822", ['U'] = "080312324348",
-    ['V'] = "082248", ['W'] = "0812365268", ['X'] = "0842 4802", ['Y'] = "082548 2522",
-    ['Z'] = "08480242", ['.'] = "0202", [','] = "1201", [':'] = "0202 0505", [';'] = "1201 1515",
-    ['-'] = "0535", ['+'] = "0545 2723", ['='] = "0444 0646", ['/'] = "0148", ['('] = "28060321",
-    [')'] = "08262301", ['['] = "28080121", [']'] = "08282101", ['^'] = "062846", ['_'] = "0141",
-    ['*'] = "2723 0644 0446", ['%'] = "0248 0707 4343", ['<'] = "470543", ['>'] = "074503",
-    ['|'] = "0901", ['\''] = "0807", ['"'] = "0807 2827", ['!'] = "0804 0202", ['~'] = "05163445",
-    ['?'] = "07183847462524 2222", [' '] = ""
-};
+/* The height of capitals, in units. */
+static const float CAPITALS = 6;
 
-const char *view_letter_strokes(char letter)
+float view_text_width(const canvas *i, const char *text, float unit)
 {
-    const char *s = letter > 0 ? strokes[(int)letter] : NULL;
-    return s ? s : "0242480802";       /* an empty box for what has no glyph */
-}
-
-/* Grid units to the next letter. Digits are equally wide, so that numbers stand still in a film. */
-int view_letter_advance(char letter)
-{
-    int widest = letter == ' ' ? 2 : 0;
-    if (letter >= '0' && letter <= '9') return 6;
-    for (const char *s = view_letter_strokes(letter); *s; s += *s == ' ' ? 1 : 2)
-        if (*s != ' ' && *s - '0' > widest) widest = *s - '0';
-    return widest + 2;
-}
-
-float view_text_width(const char *text, float unit)
-{
-    float width = 0;
-    for (; *text; text++) width += (float)view_letter_advance(*text);
-    return width > 0 ? (width - 2)*unit : 0;
+    return view_walk_letters(i->letters, 0, 0, CAPITALS*unit, text, NULL, NULL);
 }
 
 void view_draw_stroke(canvas *i, const float a[2], const float b[2], float pen, vec color)
@@ -76,24 +30,21 @@ void view_draw_stroke(canvas *i, const float a[2], const float b[2], float pen, 
         }
 }
 
-/* x, y: left end of the baseline; unit: pixels of a grid step. */
+typedef struct brush { canvas *on; vec color; } brush;
+
+static void mix_letter(void *user, int x, int y, float share)
+{
+    const brush *b = user;
+    if (x < 0 || y < 0 || x >= b->on->width || y >= b->on->height) return;
+    vec *at = &b->on->color[(size_t)y*(size_t)b->on->width + (size_t)x];
+    *at = vec_mix(*at, b->color, share);
+}
+
+/* x, y: left end of the baseline. */
 void view_draw_text(canvas *i, float x, float y, float unit, const char *text, vec color)
 {
-    for (; *text; text++) {
-        const char *s = view_letter_strokes(*text);
-        float last[2] = { 0, 0 };
-        int points = 0;
-        for (; *s; s += *s == ' ' ? 1 : 2) {
-            if (*s == ' ') {
-                points = 0;
-                continue;
-            }
-            float at[2] = { x + (float)(s[0] - '0')*unit, y - (float)(s[1] - '0' - 2)*unit };
-            if (points++ > 0) view_draw_stroke(i, last, at, 0.85f*unit, color);
-            memcpy(last, at, sizeof last);
-        }
-        x += (float)view_letter_advance(*text)*unit;
-    }
+    brush b = { i, color };
+    view_walk_letters(i->letters, x, y, CAPITALS*unit, text, mix_letter, &b);
 }
 
 static const vec ink = { 0.02f, 0.03f, 0.05f };
@@ -142,13 +93,13 @@ void view_write_tick(double v, double step, char text[32])
     snprintf(text, 32, "%.10g", fabs(v) < 1e-9*step ? 0 : v);
 }
 
-static float widest_tick(double low, double high, double step, float unit)
+static float widest_tick(const canvas *i, double low, double high, double step, float unit)
 {
     char text[32];
     float widest = 0;
     for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
         view_write_tick(v, step, text);
-        widest = fmaxf(widest, view_text_width(text, unit));
+        widest = fmaxf(widest, view_text_width(i, text, unit));
     }
     return widest;
 }
@@ -159,10 +110,10 @@ void view_draw_color_bar(canvas *i, const tobi_picture *f, double low, double hi
 {
     const double step = view_tick_step(high - low);
     float unit = 0.9f*view_letter_unit(i), width = 0.014f*(float)i->width, height = 0.40f*(float)i->height;
-    const float room = 0.12f*(float)i->width, all = view_text_width(f->label, unit);
+    const float room = 0.12f*(float)i->width, all = view_text_width(i, f->label, unit);
     if (all > room) unit = fmaxf(unit*room/all, 0.65f*unit);
-    float right = (float)i->width - 4*unit, wide = view_text_width(f->label, unit);
-    float x = fminf(0.935f*(float)i->width, right - widest_tick(low, high, step, unit) - 4*unit - width);
+    float right = (float)i->width - 4*unit, wide = view_text_width(i, f->label, unit);
+    float x = fminf(0.935f*(float)i->width, right - widest_tick(i, low, high, step, unit) - 4*unit - width);
     float bottom = 0.5f*(float)i->height + 0.5f*height, left = fminf(x - 2*unit, right - wide);
     lighten_dark(i, (int)(left - 5*unit), (int)(bottom - height - 20*unit), i->width, (int)(bottom + 8*unit));
     for (int row = 0; row < (int)height; row++)

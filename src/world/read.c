@@ -1,17 +1,20 @@
 /* Reading a world: fields in id order, surfaces, the state hash. */
 #include "base/error.h"
+#include "base/language.h"
 #include "geom/vec3.h"
 #include "world/step.h"
 #include "world/scalars.h"
 #include "world/world.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Fields for results that every method has; those of one method are in its `outputs`. */
 static const tobi_output common[] = {
-    { "position", 3, "m", 0 },    { "velocity", 3, "m/s", 0 }, { "pressure", 1, "Pa", 0 },
-    { "density", 1, "kg/m3", 0 }, { "object_id", 1, "1", 0 },  { "particle_id", 1, "1", 0 },
+    { TR("position"), 3, "m", 0 }, { TR("velocity"), 3, "m/s", 0 }, { TR("pressure"), 1, "Pa", 0 },
+    { TR("density"), 1, "kg/m3", 0 }, { TR("object_id"), 1, "1", 0 },
+    { TR("particle_id"), 1, "1", 0 },
 };
 enum { COMMON = sizeof common/sizeof *common };
 
@@ -90,6 +93,20 @@ const char *tobi_world_find_field(const char *name, int *component, const char *
     if (component) *component = part;
     if (unit) *unit = o->unit;
     return o->name;
+}
+
+void tobi_field_label(const char *name, char *text, size_t size)
+{
+    static const char speed[] = TR("speed");
+    const char *unit = NULL;
+    const char *field = name && strcmp(name, speed) == 0 ? speed : tobi_world_find_field(name, NULL, &unit);
+    const char *part = field ? name + strlen(field) : "", *shown = field ? tr(field) : name ? name : "";
+    if (!text || size == 0) return;
+    if (field == speed) unit = "m/s";
+    const int bare = !unit || strcmp(unit, "1") == 0;
+    /* A component of a field that has a name in another language stands apart from it. */
+    if (*part && shown != field) snprintf(text, size, bare ? "%s %s" : "%s %s [%s]", shown, part + 1, unit);
+    else snprintf(text, size, bare ? "%s%s" : "%s%s [%s]", shown, part, unit);
 }
 
 int tobi_body_has_field(int field)

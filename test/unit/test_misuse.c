@@ -396,7 +396,10 @@ static void no_object_and_no_text(void **state)
     assert_int_equal(width, 0);
     tobi_overlay_box(NULL, 0, 0, 9, 9, black, 1);
     tobi_overlay_line(&nowhere, 0, 0, 9, 9, 1, NULL);
-    assert_true(tobi_overlay_text(NULL, 0, 0, 9, NULL, black) == 0 && tobi_overlay_text_width(9, NULL) == 0);
+    assert_true(tobi_overlay_text(NULL, 0, 0, 9, NULL, black) == 0);
+    assert_true(tobi_overlay_text_width(NULL, 9, NULL) == 0);
+    assert_true(tobi_letters_have(NULL, NULL) == 0 && tobi_letters_font(NULL) == NULL);
+    tobi_letters_close(NULL);
     tobi_world_destroy(w);
 }
 

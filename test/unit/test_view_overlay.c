@@ -14,7 +14,7 @@
 enum { W = 64, H = 32 };
 static const uint8_t white[3] = { 255, 255, 255 };
 static uint8_t pixels[H + 2][W][3];      /* a row of guards above and below */
-static const tobi_overlay over = { &pixels[1][0][0], W, H };
+static tobi_overlay over = { &pixels[1][0][0], W, H, NULL };
 
 static long sum_of(int from, int to)
 {
@@ -53,7 +53,7 @@ static void text_is_as_wide_as_said(void **state)
     (void)state;
     memset(pixels, 0, sizeof pixels);
     const float wide = tobi_overlay_text(&over, 4, 20, 9, "10.5 m", white);
-    assert_float_equal(wide, tobi_overlay_text_width(9, "10.5 m"), 1e-4);
+    assert_float_equal(wide, tobi_overlay_text_width(&over, 9, "10.5 m"), 1e-4);
     assert_true(sum_of(1, H + 1) > 255*20);
     for (int y = 1; y <= H; y++)
         for (int x = 5 + (int)wide; x < W; x++) assert_int_equal(pixels[y][x][1], 0);
@@ -137,13 +137,37 @@ static void slow_water_differs_from_water_at_rest(void **state)
     assert_true(slow > rest + 45 && fast > slow && fastest > fast + 10);
 }
 
+/* Japanese letters come from another font than Latin ones; without any font nothing is drawn. */
+static void letters_of_two_fonts_stand_in_a_row(void **state)
+{
+    (void)state;
+    const tobi_overlay none = { &pixels[1][0][0], W, H, NULL };
+    memset(pixels, 0, sizeof pixels);
+    assert_float_equal(tobi_overlay_text(&none, 4, 20, 9, "10.5 m", white), 0, 0);
+    assert_int_equal(sum_of(0, H + 2), 0);
+    assert_true(tobi_letters_have(over.letters, "speed [m/s]"));
+    assert_false(tobi_letters_have(over.letters, "a\xf4\x8f\xbf\xbd"));      /* U+10FFFD is nobody's */
+    print_message("font: %s\n", tobi_letters_font(over.letters));
+    if (!tobi_letters_have(over.letters, "\xe5\x9c\xa7")) skip();
+    const float both = tobi_overlay_text_width(&over, 9, "m\xe5\x9c\xa7m");
+    const float latin = tobi_overlay_text_width(&over, 9, "m");
+    assert_float_equal(both, 2*latin + tobi_overlay_text_width(&over, 9, "\xe5\x9c\xa7"), 1e-4);
+    assert_true(both > 2*9);
+    assert_true(tobi_overlay_text(&over, 20, 20, 9, "\xe5\x9c\xa7", white) > 9);
+    assert_true(sum_of(1, H + 1) > 255*20);
+}
+
 int main(void)
 {
+    over.letters = tobi_letters_open();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_and_lines_stay_inside), cmocka_unit_test(lines_are_as_thick_as_asked),
         cmocka_unit_test(scales_show_on_dark_water),
         cmocka_unit_test(slow_water_differs_from_water_at_rest),
-        cmocka_unit_test(text_is_as_wide_as_said), cmocka_unit_test(a_picture_in_memory_is_that_of_the_file),
+        cmocka_unit_test(text_is_as_wide_as_said), cmocka_unit_test(letters_of_two_fonts_stand_in_a_row),
+        cmocka_unit_test(a_picture_in_memory_is_that_of_the_file),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    tobi_letters_close(over.letters);
+    return failed;
 }

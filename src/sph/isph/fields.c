@@ -1,6 +1,7 @@
 /* The terms of isph per particle, for output: computed when they are asked for, at the present positions, as
    the next step begins. Drawback: forces are computed once more for each; bodies that move by forces count
    with the velocities they have. */
+#include "base/language.h"
 #include "sph/isph/fields.h"
 #include "sph/boundary/boundary.h"
 #include "sph/fields.h"
@@ -10,14 +11,15 @@
 #include <string.h>
 
 const tobi_output isph_outputs[] = {
-    { "acceleration", 3, "m/s2", 1 }, { "vorticity", 3, "1/s", 1 }, { "surface", 1, "1", 0 },
-    { "apparent_viscosity", 1, "Pa s", 1 }, { "material", 1, "1", 0 },
-    { "temperature", 1, "degC", 0 }, { "concentration", 1, "1", 0 },
-    { "viscous_acceleration", 3, "m/s2", 1 }, { "pressure_acceleration", 3, "m/s2", 1 },
-    { "divergence", 1, "1/s", 1 }, { "predicted_divergence", 1, "1/s", 1 },
-    { "pressure_source", 1, "Pa/m2", 1 },
-    { "predicted_density", 1, "kg/m3", 1 }, { "surface_gate", 1, "1", 1 }, { "surface_normal", 3, "1", 1 },
-    { NULL, 0, NULL, 0 } };
+    { TR("acceleration"), 3, "m/s2", 1 }, { TR("vorticity"), 3, "1/s", 1 },
+    { TR("surface"), 1, "1", 0 }, { TR("apparent_viscosity"), 1, "Pa s", 1 },
+    { TR("material"), 1, "1", 0 }, { TR("temperature"), 1, "degC", 0 },
+    { TR("concentration"), 1, "1", 0 }, { TR("viscous_acceleration"), 3, "m/s2", 1 },
+    { TR("pressure_acceleration"), 3, "m/s2", 1 }, { TR("divergence"), 1, "1/s", 1 },
+    { TR("predicted_divergence"), 1, "1/s", 1 }, { TR("pressure_source"), 1, "Pa/m2", 1 },
+    { TR("predicted_density"), 1, "kg/m3", 1 }, { TR("surface_gate"), 1, "1", 1 },
+    { TR("surface_normal"), 3, "1", 1 }, { NULL, 0, NULL, 0 }
+};
 
 static int is(const char *a, const char *b) { return strcmp(a, b) == 0; }
 
