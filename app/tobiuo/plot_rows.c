@@ -160,7 +160,8 @@ const columns_row plot_joints[] = {
     { "joints_force", TEXT("Force of the joints"), { TEXT("force_x"), TEXT("force_y"), TEXT("force_z") } },
     { "joints_moment", TEXT("Moment of the joints"),
       { TEXT("moment_x"), TEXT("moment_y"), TEXT("moment_z") } },
-    { "joints_angle", TEXT("Angle and gap of the joints"), { TEXT("angle"), TEXT("gap") } },
+    { "joints_angle", TEXT("Angle, position and gap of the joints"),
+      { TEXT("angle"), TEXT("position"), TEXT("gap") } },
     { "joints_power", TEXT("Motors and dampers of the joints"),
       { TEXT("motor_torque"), TEXT("motor_force"), TEXT("power") } },
     { 0 }

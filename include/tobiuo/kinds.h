@@ -1,4 +1,4 @@
-/* Kinds of sides and of materials: plain numbers, so that kernels may read them too. */
+/* Kinds of sides, of materials and of joints: plain numbers, so that kernels may read them too. */
 #ifndef TOBIUO_KINDS_H
 #define TOBIUO_KINDS_H
 
@@ -23,5 +23,13 @@ typedef enum tobi_model {
     TOBI_SAND,
     TOBI_STATIONARY
 } tobi_model;
+
+/* How a joint holds two bodies; on a slide the body goes along an axis of the other one. */
+typedef enum tobi_joint_between {
+    TOBI_BETWEEN_HINGE,
+    TOBI_BETWEEN_BALL,
+    TOBI_BETWEEN_FIXED,
+    TOBI_BETWEEN_SLIDE
+} tobi_joint_between;
 
 #endif

@@ -78,7 +78,7 @@ TOBI_API extern const tobi_param_table tobi_scalar_value_table;
 /* Whether gravity can follow it, its file included. */
 TOBI_API tobi_status tobi_gravity_check(const tobi_gravity_def *def, tobi_error *err);
 
-/* The same of a motor, of a guide (slides 1) or a hinge; of one that is none, TOBI_OK. */
+/* The same of a motor, of a guide (slides 1), a slide (2) or a hinge; of one that is none, TOBI_OK. */
 TOBI_API tobi_status tobi_motor_check(const tobi_motor_def *def, int slides, tobi_error *err);
 /* Whether it gives anything of a motor. */
 TOBI_API int tobi_motor_is_given(const tobi_motor_def *def);

@@ -161,7 +161,7 @@ typedef struct tobi_control_joint {
     const char *name;           /* as in joints.csv: of the joint, or of a body with a hinge         */
     union { double angle, position; };  /* degrees since the start, of body against to_body; m        */
     double speed;               /* degrees/s, m/s                                                    */
-    int    slides;              /* 1: a guide, with position and speed in m                          */
+    int    slides;              /* 1: a guide or slide, with position and speed in m                 */
 } tobi_control_joint;
 /* What a control program sees of its body, in world axes, and what it answers. */
 typedef struct tobi_control_input {
@@ -368,29 +368,28 @@ typedef struct tobi_line_info {
 
 /* A joint of a body with another one, or with the domain. */
 enum { TOBI_JOINT_LIMIT = 64 };
-typedef enum { TOBI_BETWEEN_HINGE, TOBI_BETWEEN_BALL, TOBI_BETWEEN_FIXED } tobi_joint_between;
 typedef struct tobi_joint_def {
     const char *name;
     int    kind;                /* tobi_joint_between; in 2-D a ball joint is a hinge                */
     const char *body;           /* name of a free or controlled body                                 */
     const char *to_body;        /* name of another body, not a deforming one; NULL = the domain      */
-    double point[3], axis[3];   /* m, of any length: as the bodies start. axis of a hinge, 0: z      */
-    double lower, upper, rest;  /* degrees, of a hinge: its stops, both 0 = none; rest of its spring */
-    double stiffness, damping;  /* N m/rad, N m s/rad, of a hinge                                    */
-    tobi_motor_def motor;       /* of a hinge                                                        */
+    double point[3], axis[3];   /* m, of any length: as the bodies start. axis of a hinge, 0: z; of a slide */
+    double lower, upper, rest;  /* degrees, of a slide m: stops, both 0 = none; where its spring rests */
+    double stiffness, damping;  /* N m/rad, N m s/rad; of a slide N/m, N s/m                         */
+    tobi_motor_def motor;       /* of a hinge, or as of a guide                                      */
 } tobi_joint_def;
 
 /* A joint after a step. */
 typedef struct tobi_joint_info {
     double force[3];            /* N on the body, mean over the step                                 */
-    double moment[3];           /* N m on it; of a hinge across its axis, of a ball joint 0          */
-    double angle;               /* degrees since the start, of the body against the other            */
+    double moment[3];           /* N m on it, at the place of the body; of a hinge across its axis     */
+    double angle, position;     /* degrees, of a guide or slide m: since the start, against the other */
     double gap;                 /* m between what is joined                                          */
     double motor_torque;        /* N m about the axis on the body, of a motor, mean over the step    */
     double motor_force;         /* N along the guide on the body, likewise                           */
     double power;               /* W that damper and motor take from the bodies, mean over the step  */
     int    has_motor, has_power;    /* 1: it has a motor; a motor or a damper                        */
-    int    slides;              /* 1: a guide                                                        */
+    int    slides;              /* 1: a guide or a slide                                             */
 } tobi_joint_info;
 
 /* What pictures show, and from where. */

@@ -22,21 +22,6 @@ static int moves(const tobi_body *bodies, int body)
     return body >= 0 && bodies[body].rigid.kind != TOBI_PRESCRIBED;
 }
 
-static int count_rows(const tobi_constraints *c, const tobi_constraint *j)
-{
-    const int fixed = j->kind == TOBI_BETWEEN_FIXED;
-    if (j->kind == TOBI_BETWEEN_MOTOR) return 1;
-    return (c->dimension == 2 ? 2 : j->kind == TOBI_BETWEEN_BALL ? 3 : 5) + (fixed || j->lower < j->upper) +
-           (j->motor.kind != TOBI_MOTOR_NONE);
-}
-
-/* The row of its motor, before that of its stops; NULL: none. */
-static tobi_constraint_row *motor_of(const tobi_constraints *c, const tobi_constraint *j,
-                                     tobi_constraint_row *row)
-{
-    return j->motor.kind ? row + count_rows(c, j) - 1 - (j->lower < j->upper) : NULL;
-}
-
 static int find_slot(tobi_constraints *c, const tobi_body *bodies, int body)
 {
     if (!moves(bodies, body)) return -1;
@@ -91,7 +76,7 @@ tobi_status tobi_constraints_start(tobi_constraints *c, const tobi_body *bodies,
     if (!c->body || !c->row) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %d joints", c->count);
     for (int k = 0; k < c->count; k++) {
         tobi_constraint *j = &c->at[k];
-        for (int i = count_rows(c, j); i > 0; i--, c->rows++)
+        for (int i = tobi_constraint_row_count(c, j); i > 0; i--, c->rows++)
             for (int side = 0; side < 2; side++)
                 c->row[c->rows].slot[side] = find_slot(c, bodies, j->body[side]);
         find_turn(j, bodies, j->start);
@@ -123,95 +108,6 @@ int tobi_constraints_join(const tobi_constraints *c, int a, int b)
         if ((body[0] == a && body[1] == b) || (body[0] == b && body[1] == a)) return 1;
     }
     return 0;
-}
-
-/* --- rows --------------------------------------------------------------------------------------- */
-
-void tobi_constraint_end(const tobi_constraint *j, int side, const tobi_body *bodies, int next,
-                         double point[3], double axis[3])
-{
-    const int body = j->body[side];
-    double m[3][3];
-    memcpy(point, j->point[side], 3*sizeof *point);
-    memcpy(axis, j->axis[side], 3*sizeof *axis);
-    if (body < 0) return;
-    const tobi_rigid *r = &bodies[body].rigid;
-    if (next && r->kind == TOBI_PRESCRIBED) {
-        memcpy(point, j->next_point, 3*sizeof *point);
-        memcpy(axis, j->next_axis, 3*sizeof *axis);
-        return;
-    }
-    tobi_quaternion_matrix(next ? r->next_orientation : r->orientation, m);
-    for (int a = 0; a < 3; a++) {
-        point[a] = (next ? r->next_position : r->position)[a] + vec3_dot(m[a], j->point[side]);
-        axis[a] = vec3_dot(m[a], j->axis[side]);
-    }
-}
-
-/* Two directions across n, the same for the same n. */
-static void make_tangents(const double n[3], double out[2][3])
-{
-    const int k = fabs(n[0]) < 0.6 ? 0 : fabs(n[1]) < 0.6 ? 1 : 2;
-    const double e[3] = { k == 0, k == 1, k == 2 };
-    vec3_cross(out[0], n, e);
-    vec3_normalize(out[0]);
-    vec3_cross(out[1], n, out[0]);
-}
-
-/* Along the axes of the domain the places do not part; about two axes across a hinge the bodies do not turn
-   against each other, by a motor as it says about its axis, at a stop or fixed not about it: the last row. */
-static void make_rows(const tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
-                      tobi_constraint_row *row, int count)
-{
-    const int fixed = j->kind == TOBI_BETWEEN_FIXED, last = fixed || j->lower < j->upper ? count - 1 : -1;
-    const tobi_constraint_row *motor = motor_of(c, j, row);
-    double point[2][3], axis[2][3], across[2][3];
-    for (int side = 0; side < 2; side++) tobi_constraint_end(j, side, bodies, 0, point[side], axis[side]);
-    make_tangents(axis[0], across);
-    for (int i = 0; i < count; i++) {
-        const double along[3] = { i == 0, i == 1, i == 2 };
-        tobi_constraint_row *r = &row[i];
-        const int about = i == last || r == motor;
-        r->stop = i == last && !fixed;
-        r->motor = r != motor ? 0 : j->motor.kind == TOBI_MOTOR_TORQUE ? -1 : 1;
-        r->turns = (about || i >= c->dimension) && !j->slides;
-        memcpy(r->axis, about ? axis[0] : r->turns ? across[i - c->dimension] : along, sizeof r->axis);
-        memset(r->jacobian, 0, sizeof r->jacobian);
-        for (int side = 0; side < 2; side++) {
-            double arm[3], lever[3];
-            if (r->slot[side] < 0) continue;
-            vec3_sub(arm, point[side], bodies[j->body[side]].rigid.position);
-            vec3_cross(lever, arm, r->axis);
-            for (int a = 0; a < 3; a++) {
-                r->jacobian[side][a] = r->turns ? 0 : (side ? 1 : -1)*r->axis[a];
-                r->jacobian[side][3 + a] = (side ? 1 : -1)*(r->turns ? r->axis[a] : lever[a]);
-            }
-        }
-    }
-}
-
-/* How far a joint is open at the next pose, in its rows. */
-static void find_gap(const tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
-                     tobi_constraint_row *row)
-{
-    const int count = count_rows(c, j);
-    tobi_constraint_row *motor = motor_of(c, j, row);
-    double point[2][3], axis[2][3], apart[3], turned[3];
-    for (int side = 0; side < 2; side++) tobi_constraint_end(j, side, bodies, 1, point[side], axis[side]);
-    vec3_sub(apart, point[1], point[0]);
-    vec3_cross(turned, axis[0], axis[1]);
-    for (int i = 0; i < count; i++) row[i].gap = vec3_dot(row[i].axis, row[i].turns ? turned : apart);
-    if (motor) motor->gap = motor->motor < 0 || motor->released ? 0 : tobi_motor_gap(j, bodies);
-    tobi_constraint_row *last = &row[count - 1];
-    if (j->kind == TOBI_BETWEEN_FIXED) last->gap = -tobi_constraint_angle(j, bodies, 1);
-    if (!last->stop) return;
-    if (motor && motor->active) {                /* it turns to where the stops allow */
-        last->gap = 0;
-        return;
-    }
-    const double angle = tobi_constraint_angle(j, bodies, 1);
-    last->gap = (last->active < 0 ? j->lower : j->upper) - angle;
-    if (!last->active) last->gap = last->released ? 0 : fmin(j->upper - angle, 0) + fmax(j->lower - angle, 0);
 }
 
 /* --- the equation ----------------------------------------------------------------------------- */
@@ -280,7 +176,7 @@ static void set_stop(const tobi_constraint *j, const tobi_body *bodies, tobi_con
 {
     if (!row->stop) return;
     row->active = row->released = 0;
-    const int stop = tobi_constraint_at_stop(j, tobi_constraint_angle(j, bodies, 0));
+    const int stop = tobi_constraint_at_stop(j, tobi_constraint_place(j, bodies, 0));
     row->active = fabs(tobi_constraint_rate(j, bodies)) <= AT_REST ? stop : 0;
 }
 
@@ -297,10 +193,11 @@ static void set_motor(const tobi_constraints *c, const tobi_constraint *j, const
 void tobi_constraints_factor(tobi_constraints *c, const tobi_body *bodies)
 {
     tobi_constraint_row *row = c->row;
-    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++) {
-        make_rows(c, &c->at[k], bodies, row, count_rows(c, &c->at[k]));
-        set_motor(c, &c->at[k], bodies, motor_of(c, &c->at[k], row));
-        set_stop(&c->at[k], bodies, &row[count_rows(c, &c->at[k]) - 1]);
+    for (int k = 0; k < c->count; row += tobi_constraint_row_count(c, &c->at[k]), k++) {
+        tobi_constraint_make_rows(c, &c->at[k], bodies, row);
+        set_motor(c, &c->at[k], bodies, tobi_constraint_motor_row(c, &c->at[k], row));
+        set_stop(&c->at[k], bodies, &row[tobi_constraint_row_count(c, &c->at[k]) - 1]);
+        tobi_constraint_turn_pace(c, &c->at[k], bodies, row);
     }
     for (int i = 0; i < c->rows; i++)
         for (int side = 0; side < 2; side++) {
@@ -380,7 +277,7 @@ static int meet(tobi_constraints *c, const tobi_constraint *j, const tobi_body *
 {
     double rate = r->pace;               /* of the gap: the angle falls as it grows */
     if (!r->stop || r->active || r->released) return 0;
-    const int stop = tobi_constraint_at_stop(j, tobi_constraint_angle(j, bodies, 0));
+    const int stop = tobi_constraint_at_stop(j, tobi_constraint_place(j, bodies, 0));
     for (int side = 0; side < 2; side++)
         if (r->slot[side] >= 0) rate += dot6(r->jacobian[side], c->speed[r->slot[side]]);
     if (!stop || !(rate*stop < 0)) return 0;
@@ -391,8 +288,9 @@ static int meet(tobi_constraints *c, const tobi_constraint *j, const tobi_body *
 static void bound_motors(tobi_constraints *c, double share)
 {
     tobi_constraint_row *row = c->row;
-    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++)
-        if (c->at[k].motor.kind) tobi_motor_bound(c, &c->at[k], motor_of(c, &c->at[k], row), share);
+    for (int k = 0; k < c->count; row += tobi_constraint_row_count(c, &c->at[k]), k++)
+        if (c->at[k].motor.kind)
+            tobi_motor_bound(c, &c->at[k], tobi_constraint_motor_row(c, &c->at[k], row), share);
 }
 
 void tobi_constraints_obey(tobi_constraints *c, const tobi_body *bodies)
@@ -400,18 +298,18 @@ void tobi_constraints_obey(tobi_constraints *c, const tobi_body *bodies)
     for (int i = 0; i < c->rows; i++) c->row[i].released = 0;
     bound_motors(c, 1);
     for (int n = 0, again = 1; again; n++) {
-        int row = 0;
+        tobi_constraint_row *row = c->row;
         again = 0;
         tobi_constraints_project(c, 1);
         for (int k = 0; k < c->count && n < MOST_CHANGES; k++) {
-            row += count_rows(c, &c->at[k]);
-            tobi_constraint_row *motor = motor_of(c, &c->at[k], c->row + row - count_rows(c, &c->at[k]));
+            tobi_constraint_row *motor = tobi_constraint_motor_row(c, &c->at[k], row);
+            row += tobi_constraint_row_count(c, &c->at[k]);
             if (motor) {
                 again |= release(c, (int)(motor - c->row));
                 again |= tobi_motor_engage(c, motor, c->impulse[motor - c->row]);
             }
-            again |= release(c, row - 1);
-            again |= meet(c, &c->at[k], bodies, &c->row[row - 1]);
+            again |= release(c, (int)(row - c->row) - 1);
+            again |= meet(c, &c->at[k], bodies, row - 1);
         }
         if (again) factorize(c);
     }
@@ -427,35 +325,13 @@ void tobi_constraints_add_load(const tobi_constraints *c, int slot, double f[6])
 
 /* --- poses -------------------------------------------------------------------------------------- */
 
-/* Where a motor and the motion of a prescribed body take a joint, and how fast that opens it. */
-static tobi_status follow_motion(const tobi_constraints *c, tobi_constraint *j, const tobi_body *bodies,
-                                 double t, double dt, tobi_constraint_row *row, tobi_error *err)
-{
-    const int count = count_rows(c, j);
-    double point[3], axis[3], shift[3], turned[3];
-    for (int i = 0; i < count; i++) row[i].pace = 0;
-    if (j->motor.kind) {
-        tobi_motor_aim(j, bodies, dt, motor_of(c, j, row)->mobility);
-        motor_of(c, j, row)->pace = j->motor.rate;
-    }
-    if (j->body[1] < 0 || moves(bodies, j->body[1])) return TOBI_OK;
-    TOBI_TRY(tobi_constraint_follow(j, bodies, c->reach, t, dt, err));
-    tobi_constraint_end(j, 1, bodies, 0, point, axis);
-    vec3_sub(shift, j->next_point, point);
-    vec3_cross(turned, axis, j->next_axis);
-    for (int i = 0; i < count; i++)
-        row[i].pace += row[i].stop || row[i].motor ? vec3_dot(row[i].axis, j->spin)
-                                                   : vec3_dot(row[i].axis, row[i].turns ? turned : shift)/dt;
-    return TOBI_OK;
-}
-
 /* The largest gap at the next pose, in units of CLOSED. */
 static double find_gaps(tobi_constraints *c, const tobi_body *bodies)
 {
     tobi_constraint_row *row = c->row;
     double most = 0;
-    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++)
-        find_gap(c, &c->at[k], bodies, row);
+    for (int k = 0; k < c->count; row += tobi_constraint_row_count(c, &c->at[k]), k++)
+        tobi_constraint_find_gap(c, &c->at[k], bodies, row);
     for (int i = 0; i < c->rows; i++) most = fmax(most, fabs(c->row[i].gap)/(c->row[i].turns ? 1 : c->reach));
     return most/CLOSED;
 }
@@ -536,8 +412,8 @@ tobi_status tobi_constraints_close(tobi_constraints *c, tobi_body *bodies, doubl
     tobi_motors_begin(c, bodies, dt);
     tobi_constraints_take_inverse(c, bodies);
     tobi_constraints_factor(c, bodies);
-    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++)
-        TOBI_TRY(follow_motion(c, &c->at[k], bodies, t, dt, row, err));
+    for (int k = 0; k < c->count; row += tobi_constraint_row_count(c, &c->at[k]), k++)
+        TOBI_TRY(tobi_constraint_set_pace(c, &c->at[k], bodies, t, dt, row, err));
     forget_impulses(c);
     close_gaps(c, bodies, dt, 0);
     tobi_constraints_count(c);
@@ -548,8 +424,8 @@ tobi_status tobi_constraints_close(tobi_constraints *c, tobi_body *bodies, doubl
 static void begin_motors(tobi_constraints *c, double dt)
 {
     tobi_constraint_row *row = c->row;
-    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++) {
-        const tobi_constraint_row *motor = motor_of(c, &c->at[k], row);
+    for (int k = 0; k < c->count; row += tobi_constraint_row_count(c, &c->at[k]), k++) {
+        const tobi_constraint_row *motor = tobi_constraint_motor_row(c, &c->at[k], row);
         if (motor && motor->motor > 0)
             c->impulse[motor - c->row] = -dt*vec3_dot(motor->axis, c->at[k].motor.guess);
     }
@@ -587,7 +463,7 @@ void tobi_constraints_count(tobi_constraints *c)
     const double *impulse = c->impulse;
     const tobi_constraint_row *row = c->row;
     for (int k = 0; k < c->count; k++)
-        for (int i = count_rows(c, &c->at[k]); i > 0; i--, row++, impulse++)
+        for (int i = tobi_constraint_row_count(c, &c->at[k]); i > 0; i--, row++, impulse++)
             if (row->motor) c->at[k].motor.impulse -= *impulse;
             else vec3_add_scaled(c->at[k].impulse + 3*row->turns, c->at[k].impulse + 3*row->turns, -*impulse,
                                  row->axis);

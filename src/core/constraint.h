@@ -5,7 +5,7 @@
 #include "core/body.h"
 
 enum { TOBI_CONSTRAINT_ROWS = 7 };       /* of a hinge in 3-D with stops and a motor                    */
-enum { TOBI_BETWEEN_MOTOR = 3 };         /* besides tobi_joint_between: the motor of a body's own joint  */
+enum { TOBI_BETWEEN_MOTOR = 4 };         /* besides tobi_joint_between: the motor of a body's own joint  */
 
 /* What a motor is told: nothing, how fast, how far, how strong. */
 typedef enum tobi_motor_kind {
@@ -33,7 +33,7 @@ typedef struct tobi_motor {
 typedef struct tobi_constraint_row {
     double axis[3];                      /* of length 1                                                 */
     int turns;                           /* 1: about the axis, 0: along it                              */
-    int stop;                            /* 1: of the stops of a hinge                                  */
+    int stop;                            /* 1: of the stops of a hinge or slide                         */
     int motor;                           /* 1: of a motor by speed or angle, -1: by torque, never a row */
     int active;                          /* of a stop: -1 at the lower, 1 at the upper; of a motor: 1;
                                             0: no row now                                               */
@@ -55,15 +55,19 @@ typedef struct tobi_constraint {
     int body[2];                         /* that is joined, and to which; -1: the domain                */
     double point[2][3], axis[2][3];      /* m, in rest axes about the bodies' centres; of the domain from
                                             its lower corner                                            */
-    int slides;                          /* 1: the motor of a guide                                     */
+    double way[3];                       /* of a slide: its axis, in rest axes of the other side. Then `axis`
+                                            is that which the bodies would turn about                   */
+    int slides;                          /* 1: a slide, or the motor of a guide: then rad is m, N m is N */
     double lower, upper;                 /* rad: stops; both 0 = none                                   */
     double stiffness, rest, damping;     /* N m/rad, rad, N m s/rad, about the axis                     */
-    double torque[3], before[3], damped[3];      /* N m on the body: of the spring, now and a step before,
-                                            and of the damper; of a guide's motor N                     */
+    double load[2][6], before[2][6], damped[2][6];       /* N, N m about the centre, on each side: of spring
+                                            and torque, now and a step before, and of the damper        */
+    double arm[2][3];                    /* m, of a slide: from the centres to the place of the body where
+                                            the step begins                                             */
     double start[4];                     /* how the body is turned against the other at the start       */
     double next_point[3], next_axis[3], next_turn[4];   /* at the end of the step, of a body that is
                                             prescribed: place, axis, orientation                        */
-    double spin[3];                      /* rad/s, of such a body in the step                           */
+    double spin[3], velocity[3];         /* rad/s, m/s, of such a body in the step, and of its place    */
     double impulse[6];                   /* N s, N m s at the joint: on the body, in this step          */
     tobi_motor motor;
     double rate_before;                  /* rad/s, when the step began                                  */
@@ -100,6 +104,24 @@ int tobi_constraints_slot(const tobi_constraints *c, int body);
 /* Where one side of a joint is, m from the domain's lower corner, and its axis; next: at the next pose. */
 void tobi_constraint_end(const tobi_constraint *j, int side, const tobi_body *bodies, int next,
                          double point[3], double axis[3]);
+/* joint_rows.c: the way of a slide, likewise; what parts both places, m, of a slide across its way. */
+void tobi_constraint_way(const tobi_constraint *j, const tobi_body *bodies, int next, double way[3]);
+void tobi_constraint_part(const tobi_constraint *j, const tobi_body *bodies, int next, double apart[3]);
+/* How many rows a joint has; that of its motor, before that of its stops, NULL: none. */
+int tobi_constraint_row_count(const tobi_constraints *c, const tobi_constraint *j);
+tobi_constraint_row *tobi_constraint_motor_row(const tobi_constraints *c, const tobi_constraint *j,
+                                               tobi_constraint_row *row);
+/* J at the present pose; gaps at the next one. */
+void tobi_constraint_make_rows(const tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
+                               tobi_constraint_row *row);
+void tobi_constraint_find_gap(const tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
+                              tobi_constraint_row *row);
+/* Where a motor and the motion of a prescribed body take a joint in a step from t on, and how fast that opens
+   it; of a slide anew for rows at another pose, whose axis has turned. */
+tobi_status tobi_constraint_set_pace(const tobi_constraints *c, tobi_constraint *j, const tobi_body *bodies,
+                                     double t, double dt, tobi_constraint_row *row, tobi_error *err);
+void tobi_constraint_turn_pace(const tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
+                               tobi_constraint_row *row);
 /* joint_angle.c: of the body against the other since the start, rad, -pi to pi; next: at the next pose. */
 double tobi_constraint_angle(const tobi_constraint *j, const tobi_body *bodies, int next);
 /* joint_motion.c: where a prescribed body takes its side of the joint in a step of dt from t on; arm: m, of
@@ -110,7 +132,9 @@ tobi_status tobi_constraint_follow(tobi_constraint *j, const tobi_body *bodies, 
 double tobi_constraint_rate(const tobi_constraint *j, const tobi_body *bodies);
 /* -1, 1: at the lower or upper stop within rounding, in the present pose, or beyond it; else 0. */
 int tobi_constraint_at_stop(const tobi_constraint *j, double angle);
-/* Of a guide m, of others that angle. */
+/* The axis that spring, motor and stops act about or along, at the present pose. */
+void tobi_constraint_axis(const tobi_constraint *j, const tobi_body *bodies, double axis[3]);
+/* Of a guide or slide m, of others that angle. */
 double tobi_constraint_place(const tobi_constraint *j, const tobi_body *bodies, int next);
 /* Torques of springs and dampers at the present poses; those of the last call become `before`. */
 void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodies);

@@ -1,12 +1,12 @@
-/* The angle of a joint between bodies, and what acts on it: springs, dampers and torques of motors at an
-   instant, whose means over a step keep the energy like those of lines; stops; what is told. Drawback: stiff
-   springs shorten the time step. */
+/* The angle or way of a joint between bodies, and what acts on it: springs, dampers, torques and forces of
+   motors at an instant, whose means over a step keep the energy like those of lines; stops; what is told.
+   Drawback: stiff springs shorten the time step. */
 #include "core/constraint.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <string.h>
 
-#define AT_STOP 1e-9                     /* rad */
+#define AT_STOP 1e-9                     /* rad, m */
 
 /* w x y z of the body against the other since the start. */
 static void find_turn(const tobi_constraint *j, const tobi_body *bodies, int next, double q[4])
@@ -31,36 +31,75 @@ double tobi_constraint_angle(const tobi_constraint *j, const tobi_body *bodies, 
     return remainder(2*atan2(vec3_dot(q + 1, j->axis[1]), q[0]), 2*acos(-1));
 }
 
-/* Of the hinge, as the body holds it. */
-static void find_axis(const tobi_constraint *j, const tobi_body *bodies, double axis[3])
+void tobi_constraint_axis(const tobi_constraint *j, const tobi_body *bodies, double axis[3])
 {
     double m[3][3];
-    tobi_quaternion_matrix(bodies[j->body[0]].rigid.orientation, m);
+    if (j->kind == TOBI_BETWEEN_SLIDE) {
+        tobi_constraint_way(j, bodies, 0, axis);
+        return;
+    }
+    tobi_quaternion_matrix(bodies[j->body[0]].rigid.orientation, m);     /* as the body holds it */
     for (int a = 0; a < 3; a++) axis[a] = vec3_dot(m[a], j->axis[0]);
+}
+
+/* m, of the place of the body from that of the other side. */
+static void find_shift(const tobi_constraint *j, const tobi_body *bodies, int next, double shift[3])
+{
+    double point[2][3], axis[3];
+    for (int side = 0; side < 2; side++) tobi_constraint_end(j, side, bodies, next, point[side], axis);
+    vec3_sub(shift, point[0], point[1]);
 }
 
 double tobi_constraint_place(const tobi_constraint *j, const tobi_body *bodies, int next)
 {
     const tobi_rigid *r = &bodies[j->body[0]].rigid;
-    double way[3];
+    double shift[3], way[3];
     if (!j->slides) return tobi_constraint_angle(j, bodies, next);
-    vec3_sub(way, next ? r->next_position : r->position, r->joint.point);
-    return vec3_dot(way, r->joint.axis);
+    if (j->kind == TOBI_BETWEEN_SLIDE) {
+        find_shift(j, bodies, next, shift);
+        tobi_constraint_way(j, bodies, next, way);
+        return vec3_dot(shift, way);
+    }
+    vec3_sub(shift, next ? r->next_position : r->position, r->joint.point);
+    return vec3_dot(shift, r->joint.axis);
+}
+
+/* Force and moment about the centre of the body of a side, N and N m, where spring, damper or motor give 1 N
+   or 1 N m on the body: of a slide at the place of the body. */
+static void find_unit(const tobi_constraint *j, const tobi_body *bodies, int side, double unit[6])
+{
+    double axis[3], point[3], other[3], arm[3];
+    memset(unit, 0, 6*sizeof *unit);
+    if (j->body[side] < 0) return;
+    tobi_constraint_axis(j, bodies, axis);
+    for (int a = 0; a < 3; a++) unit[a + (j->slides ? 0 : 3)] = side ? -axis[a] : axis[a];
+    if (j->kind != TOBI_BETWEEN_SLIDE) return;
+    tobi_constraint_end(j, 0, bodies, 0, point, other);
+    vec3_sub(arm, point, bodies[j->body[side]].rigid.position);
+    vec3_cross(unit + 3, arm, unit);
 }
 
 double tobi_constraint_rate(const tobi_constraint *j, const tobi_body *bodies)
 {
-    double axis[3], rate;
-    find_axis(j, bodies, axis);
+    double axis[3], rate = 0;
+    for (int side = 0; j->kind == TOBI_BETWEEN_SLIDE && side < 2; side++) {
+        double unit[6];
+        if (j->body[side] < 0) continue;
+        find_unit(j, bodies, side, unit);
+        const tobi_rigid *r = &bodies[j->body[side]].rigid;
+        rate += vec3_dot(unit, r->velocity) + vec3_dot(unit + 3, r->angular_velocity);
+    }
+    if (j->kind == TOBI_BETWEEN_SLIDE) return rate;
+    tobi_constraint_axis(j, bodies, axis);
     if (j->slides) return vec3_dot(axis, bodies[j->body[0]].rigid.velocity);
     rate = vec3_dot(axis, bodies[j->body[0]].rigid.angular_velocity);
     if (j->body[1] >= 0) rate -= vec3_dot(axis, bodies[j->body[1]].rigid.angular_velocity);
     return rate;
 }
 
-int tobi_constraint_at_stop(const tobi_constraint *j, double angle)
+int tobi_constraint_at_stop(const tobi_constraint *j, double place)
 {
-    return angle <= j->lower + AT_STOP ? -1 : angle >= j->upper - AT_STOP ? 1 : 0;
+    return place <= j->lower + AT_STOP ? -1 : place >= j->upper - AT_STOP ? 1 : 0;
 }
 
 static int acts(const tobi_constraint *j)
@@ -68,31 +107,35 @@ static int acts(const tobi_constraint *j)
     return j->stiffness > 0 || j->damping > 0 || j->motor.kind == TOBI_MOTOR_TORQUE;
 }
 
-/* rad: of its spring, from where it rests. */
-static double find_turn_of_spring(const tobi_constraint *j, const tobi_body *bodies)
+/* rad, m: of its spring, from where it rests. */
+static double find_stretch(const tobi_constraint *j, const tobi_body *bodies)
 {
-    return j->slides ? 0 : remainder(tobi_constraint_angle(j, bodies, 0) - j->rest, 2*acos(-1));
+    const double from_rest = tobi_constraint_place(j, bodies, 0) - j->rest;
+    return j->slides ? from_rest : remainder(from_rest, 2*acos(-1));
 }
 
 double tobi_constraint_energy(const tobi_constraint *j, const tobi_body *bodies)
 {
-    const double turn = j->stiffness > 0 ? find_turn_of_spring(j, bodies) : 0;
-    return 0.5*j->stiffness*turn*turn;
+    const double stretch = j->stiffness > 0 ? find_stretch(j, bodies) : 0;
+    return 0.5*j->stiffness*stretch*stretch;
 }
 
 void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodies)
 {
     for (int k = 0; k < c->count; k++) {
         tobi_constraint *j = &c->at[k];
-        double axis[3];
         if (!acts(j)) continue;
-        find_axis(j, bodies, axis);
-        memcpy(j->before, j->torque, sizeof j->before);
-        const double turn = find_turn_of_spring(j, bodies), rate = tobi_constraint_rate(j, bodies);
+        memcpy(j->before, j->load, sizeof j->before);
+        const double stretch = j->stiffness > 0 ? find_stretch(j, bodies) : 0;
+        const double rate = tobi_constraint_rate(j, bodies);
         const double driven = j->motor.kind == TOBI_MOTOR_TORQUE ? j->motor.value : 0;
-        for (int a = 0; a < 3; a++) {
-            j->torque[a] = (driven - j->stiffness*turn)*axis[a];
-            j->damped[a] = -j->damping*rate*axis[a];
+        for (int side = 0; side < 2; side++) {
+            double unit[6];
+            find_unit(j, bodies, side, unit);
+            for (int a = 0; a < 6; a++) {
+                j->load[side][a] = (driven - j->stiffness*stretch)*unit[a];
+                j->damped[side][a] = -j->damping*rate*unit[a];
+            }
         }
     }
 }
@@ -103,24 +146,26 @@ void tobi_constraints_add_springs(const tobi_constraints *c, int body, double no
     for (int k = 0; k < c->count; k++) {
         const tobi_constraint *j = &c->at[k];
         if (!acts(j) || (j->body[0] != body && j->body[1] != body)) continue;
-        const double side = j->body[0] == body ? 1 : -1;
-        double *load = j->slides ? force : torque;
-        vec3_add_scaled(load, load, side*now, j->torque);
-        vec3_add_scaled(load, load, side*before, j->before);
-        vec3_add_scaled(load, load, side*damped, j->damped);
+        const int side = j->body[0] != body;
+        for (int turns = 0; turns < 2; turns++) {
+            double *sum = turns ? torque : force;
+            vec3_add_scaled(sum, sum, now, j->load[side] + 3*turns);
+            vec3_add_scaled(sum, sum, before, j->before[side] + 3*turns);
+            vec3_add_scaled(sum, sum, damped, j->damped[side] + 3*turns);
+        }
     }
 }
 
-/* 1/(kg m2): how fast both bodies turn about the axis by a torque about it, free; joined they are slower. */
+/* 1/(kg m2), 1/kg: how fast both bodies turn or slide by that load, free; joined they are slower. */
 static double mobility(const tobi_constraint *j, const tobi_body *bodies)
 {
-    double axis[3], sum = 0;
-    find_axis(j, bodies, axis);
+    double sum = 0;
     for (int side = 0; side < 2; side++) {
-        double w[6][6];
+        double w[6][6], unit[6];
         if (j->body[side] < 0 || bodies[j->body[side]].rigid.kind == TOBI_PRESCRIBED) continue;
         tobi_constraint_inverse(&bodies[j->body[side]].rigid, w);
-        for (int a = 0; a < 3; a++) sum += axis[a]*vec3_dot(&w[3 + a][3], axis);
+        find_unit(j, bodies, side, unit);
+        for (int a = 0; a < 6; a++) sum += unit[a]*(vec3_dot(w[a], unit) + vec3_dot(&w[a][3], unit + 3));
     }
     return sum;
 }
@@ -153,15 +198,17 @@ void tobi_constraints_report(tobi_constraints *c, const tobi_body *bodies, doubl
     const double degree = acos(-1)/180;
     for (int k = 0; k < c->count; k++) {
         tobi_constraint *j = &c->at[k];
-        double point[2][3], axis[2][3];
-        for (int side = 0; side < 2; side++) tobi_constraint_end(j, side, bodies, 0, point[side], axis[side]);
+        double apart[3];
+        tobi_constraint_part(j, bodies, 0, apart);
         for (int a = 0; a < 3; a++) {
             j->info.force[a] = dt > 0 ? j->impulse[a]/dt : 0;
             j->info.moment[a] = dt > 0 ? j->impulse[3 + a]/dt : 0;
         }
         tobi_motor_report(j, bodies, dt);
-        j->info.gap = sqrt(vec3_distance2(point[0], point[1]));
+        j->info.gap = vec3_length(apart);
         const int hinge = c->dimension == 2 || j->kind == TOBI_BETWEEN_HINGE;
-        j->info.angle = (hinge ? tobi_constraint_angle(j, bodies, 0) : find_ball_angle(j, bodies))/degree;
+        j->info.position = j->slides ? tobi_constraint_place(j, bodies, 0) : 0;
+        const double angle = hinge ? tobi_constraint_angle(j, bodies, 0) : find_ball_angle(j, bodies);
+        j->info.angle = j->slides ? 0 : angle/degree;
     }
 }

@@ -61,12 +61,22 @@ static double find_rate(const tobi_constraint *j, double angle, double dt, doubl
     return (m->value - m->before)/dt + copysign(fmin(fabs(lag)/dt, brake), lag);
 }
 
+/* Of a slide: its force acts at the place of the body. */
+static void find_arms(tobi_constraint *j, const tobi_body *bodies)
+{
+    double point[3], axis[3];
+    if (j->kind != TOBI_BETWEEN_SLIDE) return;
+    tobi_constraint_end(j, 0, bodies, 0, point, axis);
+    for (int side = 0; side < 2; side++)
+        if (j->body[side] >= 0) vec3_sub(j->arm[side], point, bodies[j->body[side]].rigid.position);
+}
+
 void tobi_motor_aim(tobi_constraint *j, const tobi_body *bodies, double dt, double mobility)
 {
     tobi_motor *m = &j->motor;
-    double lower, upper, axis[3], turn[3][3];
-    tobi_quaternion_matrix(bodies[j->body[0]].rigid.orientation, turn);
-    for (int a = 0; a < 3; a++) axis[a] = vec3_dot(turn[a], j->axis[0]);
+    double lower, upper, axis[3];
+    tobi_constraint_axis(j, bodies, axis);
+    find_arms(j, bodies);
     memset(m->guess, 0, sizeof m->guess);
     if (m->kind == TOBI_MOTOR_TORQUE) {
         vec3_add_scaled(m->guess, m->guess, 0.5*(m->before + m->value), axis);
@@ -85,8 +95,12 @@ void tobi_motors_add_guess(const tobi_constraints *c, int body, double load[6])
     for (int k = 0; k < c->count; k++) {
         const tobi_constraint *j = &c->at[k];
         if (!j->motor.kind || (j->body[0] != body && j->body[1] != body)) continue;
-        double *at = load + (j->slides ? 0 : 3);
-        vec3_add_scaled(at, at, j->body[0] == body ? 1 : -1, j->motor.guess);
+        const int side = j->body[0] != body;
+        double *at = load + (j->slides ? 0 : 3), lever[3];
+        vec3_add_scaled(at, at, side ? -1 : 1, j->motor.guess);
+        if (!j->slides) continue;
+        vec3_cross(lever, j->arm[side], j->motor.guess);
+        vec3_add_scaled(load + 3, load + 3, side ? -1 : 1, lever);
     }
 }
 

@@ -243,10 +243,11 @@
     SOLID("moment_y", "N m", i.moment[1], "") \
     V("moment_z", "N m", i.moment[2], "") \
     V("angle", "degrees", i.angle, "Angle of body against to_body since the start.") \
-    V("gap", "m", i.gap, "Distance of the two points that the joint holds together.") \
+    V("position", "m", i.position, "Of a guide or slide: way of the body along the axis since the start.") \
+    V("gap", "m", i.gap, "Distance of the two points that the joint holds together; of a slide across it.") \
     V("motor_torque", "N m", i.motor_torque, \
       "Torque of its motor about the axis on its body, where it has one.") \
-    V("motor_force", "N", i.motor_force, "The same of a guide: its force along the axis.") \
+    V("motor_force", "N", i.motor_force, "The same of a guide or slide: its force along the axis.") \
     V("power", "W", i.power, \
       "Taken from the bodies by damper and motor, where it has any; below 0 the motor drives.") \
     V("work", "J", run->works.joint[k], "Sum of power times time since the start.")

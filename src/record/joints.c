@@ -1,5 +1,5 @@
-/* joints.csv: of each joint between bodies the force and moment on its body, the angle and the gap, as often
-   as the probes are read. Drawback: a mean over one step each, so that impacts scatter. */
+/* joints.csv: of each joint between bodies the force and moment on its body, the angle or position and the
+   gap, as often as the probes are read. Drawback: a mean over one step each, so that impacts scatter. */
 #include "record/columns.h"
 #include "record/record.h"
 #include "world/world.h"
@@ -17,6 +17,8 @@ enum { VALUES = sizeof values/sizeof *values };
 /* In 2-D a joint has no force along z, and a moment about z alone. Motors and dampers some have. */
 static int is_told(const tobi_run *run, const tobi_joint_info *i, int value)
 {
+    if (strcmp(values[value].name, "angle") == 0) return !i->slides;
+    if (strcmp(values[value].name, "position") == 0) return i->slides;
     if (strcmp(values[value].name, "motor_torque") == 0) return i->has_motor && !i->slides;
     if (strcmp(values[value].name, "motor_force") == 0) return i->has_motor && i->slides;
     if (strcmp(values[value].name, "power") == 0) return i->has_power;

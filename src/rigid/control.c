@@ -30,9 +30,10 @@ static void list_joints(const tobi_dynamics_state *d, const tobi_body *b, tobi_c
         tobi_constraint *j = &c->at[k];
         if (j->body[0] != body && j->body[1] != body) continue;
         if (j->kind == TOBI_BETWEEN_MOTOR) motor = &j->motor;
-        else if (j->kind == TOBI_BETWEEN_HINGE || (c->dimension == 2 && j->kind == TOBI_BETWEEN_BALL))
-            add_joint(in, motors, &j->motor, j->name, 0, tobi_constraint_angle(j, d->bodies, 0),
-                      j->rate_before);
+        else if (j->slides || j->kind == TOBI_BETWEEN_HINGE ||
+                 (c->dimension == 2 && j->kind == TOBI_BETWEEN_BALL))
+            add_joint(in, motors, &j->motor, j->name, j->slides,
+                      tobi_constraint_place(j, d->bodies, 0), j->rate_before);
     }
     if (!own->kind) return;
     add_joint(in, motors, motor, b->name, own->kind == TOBI_JOINT_GUIDE, tobi_joint_position(&b->rigid),

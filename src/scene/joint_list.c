@@ -42,7 +42,7 @@ static void check_bodies(const tobi_scene *scene, tobi_source *source, const tob
                             joint->to_body);
 }
 
-static const char *const kinds[] = { "hinge", "ball", "fixed" };
+static const char *const kinds[] = { "hinge", "ball", "fixed", "slide" };
 
 static void check_axis(const tobi_scene *scene, tobi_source *source, const tobi_joint_def *joint,
                        const tobi_place *entry)
@@ -50,24 +50,52 @@ static void check_axis(const tobi_scene *scene, tobi_source *source, const tobi_
     tobi_place axis = { entry, "axis", 0 };
     const double *a = joint->axis;
     const int given = a[0] != 0 || a[1] != 0 || a[2] != 0;
-    if (joint->kind != TOBI_BETWEEN_HINGE && given)
-        tobi_source_mistake(source, &axis, "is of a hinge, a %s joint has none", kinds[joint->kind]);
+    if (joint->kind == TOBI_BETWEEN_SLIDE && !given)
+        tobi_source_mistake(source, entry, "must have an axis, along which the body slides");
+    else if (joint->kind == TOBI_BETWEEN_SLIDE && scene->world.dimension == 2 && a[2] != 0)
+        tobi_source_mistake(source, &axis, "is %.10g in z, must be 0 in a 2-D scene", a[2]);
+    else if (joint->kind == TOBI_BETWEEN_SLIDE) return;
+    else if (joint->kind != TOBI_BETWEEN_HINGE && given)
+        tobi_source_mistake(source, &axis, "is of a hinge or slide, a %s joint has none", kinds[joint->kind]);
     else if (scene->world.dimension == 2 && (a[0] != 0 || a[1] != 0))
         tobi_source_mistake(source, &axis, "must be along z in a 2-D scene");
     else if (scene->world.dimension == 3 && joint->kind == TOBI_BETWEEN_HINGE && !given)
         tobi_source_mistake(source, entry, "must have an axis, or be of kind ball");
 }
 
+/* Keys of the motor of a guide at a hinge, or those of a hinge at a slide: each pair is one number. */
+static int check_motor_keys(const tobi_scene *scene, tobi_source *source, const tobi_joint_def *joint,
+                            int number, const tobi_place *motor)
+{
+    static const char *const keys[2][3] = { { "angle", "torque", "torque_max" },
+                                            { "position", "force", "force_max" } };
+    const json_t *list = json_object_get(scene->root, "joints");
+    const json_t *given = json_object_get(json_array_get(list, (size_t)number), "motor");
+    const int slides = joint->kind == TOBI_BETWEEN_SLIDE;
+    int good = 1;
+    for (int k = 0; k < 3; k++) {
+        tobi_place place = { motor, keys[!slides][k], 0 };
+        if (!json_object_get(given, keys[!slides][k])) continue;
+        tobi_source_mistake_at_key(source, &place, "is of a %s, a %s has %s", slides ? "hinge" : "slide",
+                                   slides ? "slide" : "hinge", keys[slides][k]);
+        good = 0;
+    }
+    return good;
+}
+
 /* A motor that cannot be one, or where none can be. */
 static void check_motor(const tobi_scene *scene, tobi_source *source, const tobi_joint_def *joint,
-                        const tobi_place *entry)
+                        int number, const tobi_place *entry)
 {
-    const int turns = joint->kind == TOBI_BETWEEN_HINGE ||
+    const int slides = joint->kind == TOBI_BETWEEN_SLIDE;
+    const int acts = slides || joint->kind == TOBI_BETWEEN_HINGE ||
                       (joint->kind == TOBI_BETWEEN_BALL && scene->world.dimension == 2);
     tobi_place motor = { entry, "motor", 0 };
-    if (!turns && tobi_motor_is_given(&joint->motor))
-        tobi_source_mistake_at_key(source, &motor, "is of a hinge, a %s joint has none", kinds[joint->kind]);
-    else tobi_joints_check_motor(source, &joint->motor, 0, &motor);
+    if (!acts && tobi_motor_is_given(&joint->motor))
+        tobi_source_mistake_at_key(source, &motor, "is of a hinge or slide, a %s joint has none",
+                                   kinds[joint->kind]);
+    else if (check_motor_keys(scene, source, joint, number, &motor))
+        tobi_joints_check_motor(source, &joint->motor, slides ? 2 : 0, &motor);
 }
 
 static void check_hinge(const tobi_scene *scene, tobi_source *source, const tobi_joint_def *joint,
@@ -79,7 +107,8 @@ static void check_hinge(const tobi_scene *scene, tobi_source *source, const tobi
         tobi_place place = { entry, keys[k], 0 };
         const int ball = scene->world.dimension == 3 && joint->kind == TOBI_BETWEEN_BALL;
         if ((ball || joint->kind == TOBI_BETWEEN_FIXED) && values[k] != 0)
-            tobi_source_mistake(source, &place, "is of a hinge, a %s joint has none", kinds[joint->kind]);
+            tobi_source_mistake(source, &place, "is of a hinge or slide, a %s joint has none",
+                                kinds[joint->kind]);
     }
     tobi_place rest = { entry, "rest", 0 };
     if (joint->rest != 0 && !(joint->stiffness > 0))
@@ -97,7 +126,7 @@ void tobi_joint_list_check(const tobi_scene *scene, tobi_source *source)
         check_bodies(scene, source, joint, &entry);
         check_axis(scene, source, joint, &entry);
         check_hinge(scene, source, joint, &entry);
-        check_motor(scene, source, joint, &entry);
+        check_motor(scene, source, joint, i, &entry);
     }
 }
 
@@ -107,6 +136,11 @@ json_t *tobi_joint_list_write_json(const tobi_scene *scene)
     int failed = 0;
     for (int k = 0; k < scene->joint_count; k++) {
         json_t *joint = tobi_write_def(&tobi_joint_table, &scene->joints[k]);
+        json_t *motor = json_object_get(joint, "motor");
+        const int slides = scene->joints[k].kind == TOBI_BETWEEN_SLIDE;
+        json_object_del(motor, slides ? "angle" : "position");           /* both names of one number */
+        json_object_del(motor, slides ? "torque" : "force");
+        json_object_del(motor, slides ? "torque_max" : "force_max");
         if (!tobi_motor_is_given(&scene->joints[k].motor)) json_object_del(joint, "motor");
         failed |= json_array_append_new(list, joint);
     }

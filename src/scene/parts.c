@@ -24,7 +24,7 @@ static const tobi_part parts[] = {
     { "world", "lines", TOBI_PART_LIST, &tobi_line_table, 0, TOBI_LINE_LIMIT,
       "Springs, ropes and mooring lines of free bodies, if any." },
     { "world", "joints", TOBI_PART_LIST, &tobi_joint_table, 0, TOBI_JOINT_LIMIT,
-      "Hinges and ball joints between two bodies, if any." },
+      "Hinges, slides and ball joints between two bodies, if any." },
     { "world", "probes", TOBI_PART_LIST, &tobi_probe_table, 0, TOBI_PROBE_LIMIT,
       "The sensors, if any." },
     { "world", "references", TOBI_PART_LIST, &tobi_reference_table, 0, 64,

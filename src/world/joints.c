@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const kinds[] = { "hinge", "ball", "fixed" };
+static const char *const kinds[] = { "hinge", "ball", "fixed", "slide" };
 
 static tobi_status check_bodies(const tobi_world *w, const tobi_joint_def *def, tobi_constraint *j,
                                 tobi_error *err)
@@ -47,26 +47,45 @@ static tobi_status check_bodies(const tobi_world *w, const tobi_joint_def *def, 
     return TOBI_OK;
 }
 
-/* A ball joint has none of what acts about an axis, nor one that is fixed. */
+/* A ball joint has none of what acts about an axis or along it, nor one that is fixed. */
 static tobi_status take_hinge(const tobi_joint_def *def, int dimension, tobi_constraint *j, tobi_error *err)
 {
-    const double degree = acos(-1)/180;
+    const int slide = def->kind == TOBI_BETWEEN_SLIDE;
+    const double unit = slide ? 1 : acos(-1)/180;
     const int acts = def->stiffness > 0 || def->damping > 0, stops = def->lower < 0 || def->upper > 0;
-    const int hinge = def->kind == TOBI_BETWEEN_HINGE || (dimension == 2 && def->kind == TOBI_BETWEEN_BALL);
-    if (!hinge && (acts || stops))
+    const int acting = slide || def->kind == TOBI_BETWEEN_HINGE ||
+                       (dimension == 2 && def->kind == TOBI_BETWEEN_BALL);
+    if (!acting && (acts || stops))
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': a %s joint has no stops, spring "
-                                          "or damper; a hinge has", def->name, kinds[def->kind]), "kind");
-    if (!hinge && tobi_motor_is_given(&def->motor))
+                                          "or damper; a hinge or slide has", def->name, kinds[def->kind]),
+                           "kind");
+    if (!acting && tobi_motor_is_given(&def->motor))
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': a %s joint has no motor; a hinge "
-                                          "has", def->name, kinds[def->kind]), "motor");
+                                          "or slide has", def->name, kinds[def->kind]), "motor");
     if (def->rest != 0 && !(def->stiffness > 0))
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': rest is of a spring, which needs "
                                           "a stiffness", def->name), "rest");
-    j->lower = def->lower*degree;
-    j->upper = def->upper*degree;
+    j->lower = def->lower*unit;
+    j->upper = def->upper*unit;
     j->stiffness = def->stiffness;
-    j->rest = def->rest*degree;
+    j->rest = def->rest*unit;
     j->damping = def->damping;
+    return TOBI_OK;
+}
+
+/* In 2-D it lies in the plane, and the bodies would turn about z. */
+static tobi_status take_way(const tobi_joint_def *def, int dimension, tobi_constraint *j, double axis[3],
+                            tobi_error *err)
+{
+    memcpy(axis, def->axis, sizeof def->axis);
+    if (!(vec3_dot(axis, axis) > 0))
+        return tobi_fail(err, TOBI_INVALID, "joint '%s': a slide has an axis", def->name);
+    if (dimension == 2 && axis[2] != 0)
+        return tobi_fail(err, TOBI_INVALID, "joint '%s': its axis is %g in z, must be 0 in 2-D", def->name,
+                         axis[2]);
+    vec3_normalize(axis);
+    memcpy(j->way, axis, sizeof j->way);
+    if (dimension == 2) memcpy(axis, (double[3]){ 0, 0, 1 }, sizeof j->way);
     return TOBI_OK;
 }
 
@@ -76,6 +95,8 @@ static tobi_status check_axis(const tobi_joint_def *def, int dimension, tobi_con
     memcpy(axis, def->axis, sizeof def->axis);
     const int given = vec3_dot(axis, axis) > 0;
     j->kind = def->kind;
+    j->slides = def->kind == TOBI_BETWEEN_SLIDE;
+    if (j->slides) return take_way(def, dimension, j, axis, err);
     if (dimension == 2 && (axis[0] != 0 || axis[1] != 0))
         return tobi_fail(err, TOBI_INVALID, "joint '%s': its axis is along z in 2-D", def->name);
     if (dimension == 2 && !given) axis[2] = 1;
@@ -99,12 +120,14 @@ static void localize(const tobi_world *w, const double place[3], const double ax
     memcpy(j->axis[side], axis, 3*sizeof *axis);
     if (j->body[side] < 0) return;
     const tobi_rigid *r = &w->sim.bodies[j->body[side]].rigid;
+    const double way[3] = { j->way[0], j->way[1], j->way[2] };
     vec3_sub(arm, arm, r->position);
     if (w->system[0].box.dimension == 2) arm[2] = 0;
     tobi_quaternion_matrix(r->orientation, turn);
     for (int a = 0; a < 3; a++) {
         j->point[side][a] = turn[0][a]*arm[0] + turn[1][a]*arm[1] + turn[2][a]*arm[2];
         j->axis[side][a] = turn[0][a]*axis[0] + turn[1][a]*axis[1] + turn[2][a]*axis[2];
+        if (side) j->way[a] = turn[0][a]*way[0] + turn[1][a]*way[1] + turn[2][a]*way[2];
     }
 }
 
@@ -130,7 +153,7 @@ tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_
     tobi_constraint *more = realloc(c->at, (size_t)(c->count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a joint");
     c->at = more;
-    TOBI_TRY(tobi_motors_add(w, &def->motor, "motor", 0, c->count, -1, err));
+    TOBI_TRY(tobi_motors_add(w, &def->motor, "motor", j.slides ? 2 : 0, c->count, -1, err));
     c->at[c->count++] = j;
     return TOBI_OK;
 }
@@ -155,6 +178,7 @@ static const char *find_own(const tobi_world *w, int number, tobi_joint_info *in
         if (info && motor) info->power += motor->info.power;
         if (info) info->has_motor = motor != NULL;
         if (info) info->slides = b->rigid.joint.kind == TOBI_JOINT_GUIDE;
+        if (info) info->position = info->slides ? tobi_joint_position(&b->rigid) : 0;
         if (info) info->has_power = motor || b->rigid.joint.damping > 0;
         return b->name;
     }
@@ -168,6 +192,7 @@ const char *tobi_world_joint(const tobi_world *w, int joint, tobi_joint_info *in
     const int count = tobi_motors_joint_count(w);
     if (joint >= count) return find_own(w, joint - count, info);
     if (info) *info = c->at[joint].info;
+    if (info) info->slides = c->at[joint].slides;
     if (info) info->has_motor = c->at[joint].motor.kind != TOBI_MOTOR_NONE;
     if (info) info->has_power = info->has_motor || c->at[joint].damping > 0;
     return c->at[joint].name;

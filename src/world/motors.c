@@ -15,16 +15,17 @@
 static const double SOON = 1e-9;         /* s, or share of the time: just before and after it           */
 static const double JUMP = 1e-6;         /* in the unit of the motor: smaller, it is rounding           */
 
-/* The words of a hinge and of a guide. */
+/* The words of a hinge, a guide and a slide. */
 static const struct { const char *joint, *place, *unit, *load, *most, *has; } words[] = {
     { "hinge", "angle", "degrees", "torque", "torque_max",
       TR("hinge that it turns; a hinge has point and axis") },
     { "guide", "position", "m", "force", "force_max",
-      TR("guide that it moves it along; a guide has an axis") } };
+      TR("guide that it moves it along; a guide has an axis") },
+    { "slide", "position", "m", "force", "force_max", NULL } };
 
 struct tobi_motor_source {
     int joint, body;             /* as of tobi_motors_add; from the start on `joint` is a constraint      */
-    int slides;                  /* 1: of a guide                                                       */
+    int slides;                  /* 1: of a guide, 2: of a slide                                         */
     int kind;                    /* tobi_motor_kind                                                     */
     double most;                 /* N m, N                                                              */
     double start;                /* s: of the definition                                                */
@@ -135,7 +136,8 @@ static tobi_status make_source(const tobi_motor_def *d, tobi_motor_source *m, to
     TOBI_TRY(check_keys(d, m->slides, err));
     tobi_status status = TOBI_OK;
     if (d->file)
-        status = tobi_at_key(err, tobi_keyframes_load_motor(d->file, m->slides, &column, &m->rows, err),
+        status = tobi_at_key(err, tobi_keyframes_load_motor(d->file, m->slides != 0, &column, &m->rows,
+                                                        err),
                              "file");
     else status = make_value(d, constant[column], &m->motion, err);
     m->kind = TOBI_MOTOR_SPEED + column;
@@ -149,7 +151,7 @@ static tobi_status make_source(const tobi_motor_def *d, tobi_motor_source *m, to
 
 tobi_status tobi_motor_check(const tobi_motor_def *def, int slides, tobi_error *err)
 {
-    tobi_motor_source m = { .slides = slides != 0 };
+    tobi_motor_source m = { .slides = slides > 1 ? 2 : slides != 0 };
     TOBI_NEED(def, "the definition");
     if (!tobi_motor_is_given(def)) return TOBI_OK;
     TOBI_TRY(make_source(def, &m, err));

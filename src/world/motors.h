@@ -4,7 +4,8 @@
 #include "world/world.h"
 
 /* Takes a motor of joint `joint` (of sim.constraints), or with joint -1 of the hinge of a body, with slides 1
-   of its guide; one that is not given is none. key: of the motor in the definition of that. */
+   of its guide; slides 2: the joint is a slide; one that is not given is none. key: of the motor in the
+   definition of that. */
 tobi_status tobi_motors_add(tobi_world *w, const tobi_motor_def *def, const char *key, int slides, int joint,
                             int body, tobi_error *err);
 /* At the start: the motors of bodies' own joints become constraints, behind the joints; all are told what

@@ -241,7 +241,7 @@ refuse 'is the body at the other side too' joints.hinge.to_body=left
 refuse '"left" is prescribed; a joint holds a free or controlled body' bodies.left.dynamics=prescribed
 refuse '"foot" is already the name of joints[0]' joints.hinge.name=foot
 refuse 'axis: must be along z in a 2-D scene' joints.hinge.axis='[1,0,0]'
-refuse 'axis: is of a hinge, a ball joint has none' joints.foot.axis='[0,0,1]'
+refuse 'axis: is of a hinge or slide, a ball joint has none' joints.foot.axis='[0,0,1]'
 expect 0 "" describe joints
 check "describe names the columns" grep -q "^  gap " out.txt
 check "and the table" grep -q "The columns of joints.csv for each joint" out.txt

@@ -234,7 +234,7 @@ static void wrong_stops_and_springs_are_refused(void **state)
     d = right, d.rest = 5;
     refuse(&d, "joint 'j': rest is of a spring, which needs a stiffness");
     d = right, d.kind = TOBI_BETWEEN_BALL, d.axis[1] = 0, d.damping = 1;
-    refuse(&d, "joint 'j': a ball joint has no stops, spring or damper; a hinge has");
+    refuse(&d, "joint 'j': a ball joint has no stops, spring or damper; a hinge or slide has");
 }
 
 /* About z at (1, 2) by user[0] rad/s. */

@@ -364,9 +364,9 @@ static void mistakes_in_a_scene_are_told(void **state)
         { "{ \"angle\": 30 }", "\"axis\": [0, 1, 0]",
           "hinge.motor.angle: the motor asks for 30 degrees at time 0" },
         { "{ \"speed\": 0 }", "\"kind\": \"ball\", \"motor\": { \"speed\": 5 }",
-          "joints[0].motor: is of a hinge, a ball joint has none" },
+          "joints[0].motor: is of a hinge or slide, a ball joint has none" },
         { "{ \"speed\": 0 }", "\"kind\": \"fixed\", \"motor\": { \"speed\": 5 }",
-          "joints[0].motor: is of a hinge, a fixed joint has none" },
+          "joints[0].motor: is of a hinge or slide, a fixed joint has none" },
         { "{ \"speed\": 0 }", "\"axis\": [0, 1, 0], \"motor\": { \"file\": \"a.csv\", \"ramp\": 5 }",
           "joints[0].motor.file: a motor with a file has no amplitude, period, phase, start and ramp" },
         { "{ \"speed\": 0 }", "\"axis\": [0, 1, 0], \"motor\": { \"spede\": 5 }",
@@ -444,7 +444,7 @@ static void mistakes_in_c_are_told(void **state)
     d = right, d.motor.speed = 5, d.motor.torque_max = -1;
     refuse(&d, "", "torque_max");
     d = right, d.motor.speed = 5, d.kind = TOBI_BETWEEN_BALL, d.axis[1] = 0;
-    refuse(&d, "motor", "joint 'j': a ball joint has no motor; a hinge has");
+    refuse(&d, "motor", "joint 'j': a ball joint has no motor; a hinge or slide has");
     d = right, d.motor.file = write_file("time,torque\n0,1\n1,2\n"), d.motor.torque_max = 5;
     refuse(&d, "motor.torque_max", "this one has a torque");
     d = right, d.motor.file = write_file("time,angle [deg]\n0,1\n1,2\n");

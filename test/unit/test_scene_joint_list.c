@@ -21,7 +21,7 @@ static const char text[] =
     "    { \"name\": \"a\", \"body\": \"boat\", \"to_body\": \"boat\", \"kind\": \"ball\","
     "      \"point\": [0, 0, 0], \"axis\": [1, 1, 1], \"damping\": 1, \"rest\": 5 },\n"
     "    { \"name\": \"b\", \"body\": \"raft\", \"point\": [0, 0, 0] },\n"
-    "    { \"name\": \"c\", \"body\": \"boat\", \"to_body\": \"gate\", \"kind\": \"slide\","
+    "    { \"name\": \"c\", \"body\": \"boat\", \"to_body\": \"gate\", \"kind\": \"slyde\","
     "      \"point\": [0, 0, 0] },\n"
     "    { \"name\": \"d\", \"to_body\": \"pier\", \"axes\": [0, 0, 1] } ] }";
 
@@ -30,8 +30,8 @@ static const char *const expected[] = {
     "joints[0].to_body: \"ship\" is no body of the scene",
     "joints[1].name: \"a\" is already the name of joints[0]",
     "joints[1].to_body: is the body at the other side too",
-    "joints[1].axis: is of a hinge, a ball joint has none",
-    "joints[1].damping: is of a hinge, a ball joint has none",
+    "joints[1].axis: is of a hinge or slide, a ball joint has none",
+    "joints[1].damping: is of a hinge or slide, a ball joint has none",
     "joints[1].rest: is of a spring, which needs a stiffness",
     "joints[2].body: \"raft\" is no body of the scene",
     ":5:5: joints[2]: must have an axis, or be of kind ball",
