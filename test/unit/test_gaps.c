@@ -59,6 +59,40 @@ static void stands(const char *method, double top, double off)
     tobi_world_destroy(w);
 }
 
+/* The floor of a vessel is as that of the domain; there the box was held down. Its outside is dry. */
+static void boxes_stand_in_vessels(void **state)
+{
+    (void)state;
+    static const struct { const char *method; double off; } run[] = {
+        { "isph", 0.005 }, { "eisph", 0.02 }, { "dfsph", 0.01 }, { "wcsph", 0.01 } };
+    for (int k = 0; k < 4; k++) {
+        char text[2000];
+        tobi_error err = { 0 };
+        tobi_world *w;
+        tobi_body_info tank;
+        snprintf(text, sizeof text, "{ \"method\": \"%s\", \"dimension\": 2, \"spacing\": 0.01,"
+                 "\"end_time\": 9, \"domain\": { \"min\": [-0.1, -0.1], \"max\": [0.7, 0.5] },"
+                 "\"bodies\": [ { \"name\": \"block\", \"box\": {"
+                 "\"min\": [0.25, 0], \"max\": [0.35, 0.1] } },"
+                 "{ \"name\": \"tank\", \"vessel\": true, \"outline\": {"
+                 "\"points\": [[0, 0], [0.6, 0], [0.6, 0.4], [0, 0.4]] } } ],"
+                 "\"fluids\": [ { \"name\": \"water\", \"fill\": ["
+                 "{ \"vessel\": \"tank\", \"level\": 0.3 } ] } ] }",
+                 run[k].method);
+        must(start_scene(text, &w, &err), &err);
+        step_to(w, 0.05);
+        const double buoyancy = WEIGHT*WIDE*HIGH, force = block_of(w).pressure_force[1];
+        assert_int_equal(tobi_world_body(w, 1, &tank), TOBI_OK);
+        const double floor = -tank.pressure_force[1]/(WEIGHT*0.6*DEPTH);
+        print_message("%s, in a vessel: %g of its buoyancy, floor %g\n", run[k].method, force/buoyancy,
+                      floor);
+        if (fabs(force/buoyancy - 1) > 0.02) fail_msg("force %g N, buoyancy %g N", force, buoyancy);
+        if (fabs(floor - 1) > run[k].off)
+            fail_msg("the floor bears %g of water and buoyancy", floor);
+        tobi_world_destroy(w);
+    }
+}
+
 static void boxes_stand(void **state)
 {
     (void)state;
@@ -118,7 +152,7 @@ static void dry_gaps_do_not_press(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(boxes_stand),
+        cmocka_unit_test(boxes_stand), cmocka_unit_test(boxes_stand_in_vessels),
         cmocka_unit_test(sealed_boxes_are_pressed),
         cmocka_unit_test(blocks_are_free),
         cmocka_unit_test(dry_gaps_do_not_press),

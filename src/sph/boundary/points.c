@@ -74,7 +74,15 @@ static int may_overlap(const tobi_system *s, int k, int other)
            tobi_constraints_join(&s->sim->constraints, k, other);
 }
 
-/* Marks the points of a body that lie in another one, or on its surface from outside. */
+/* Whether no water is between bodies that lie flush: parts of one structure. On a vessel bodies stand as on a
+   side of the domain. */
+static int are_parts(const tobi_system *s, int k, int other)
+{
+    const tobi_body *b = s->sim->bodies;
+    return (!b[k].vessel && !b[other].vessel) || tobi_constraints_join(&s->sim->constraints, k, other);
+}
+
+/* Marks the points of a body that lie in another one, or flush on it as its part. */
 static void bury_points(const tobi_system *s, int k)
 {
     const tobi_body *b = &s->sim->bodies[k];
@@ -82,11 +90,12 @@ static void bury_points(const tobi_system *s, int k)
     if (b->rigid.kind != TOBI_PRESCRIBED && s->sim->constraints.count == 0) return;
     for (int other = 0; other < s->sim->body_count; other++) {
         if (!may_overlap(s, k, other)) continue;
+        const int parts = are_parts(s, k, other);
         for (int64_t q = 0; q < b->point_count; q++) {
             tobi_bvh_hit hit;
             if (!tobi_bvh_closest(s->sim->bodies[other].bvh, b->point[q], s->smoothing.h, &hit)) continue;
             if (hit.signed_distance > least) continue;
-            if (hit.signed_distance < -least || vec3_dot(hit.normal, b->normal[q]) < -0.5)
+            if (hit.signed_distance < -least || (parts && vec3_dot(hit.normal, b->normal[q]) < -0.5))
                 b->wet[q] = TOBI_BURIED;
         }
     }

@@ -37,6 +37,14 @@ static void mark_gaps(const void *view, int64_t begin, int64_t end, double *tota
     }
 }
 
+/* A dry point that looks away from what is near, such as one on the outside of a vessel's floor, does not say
+   that the rim is dry. */
+static int looks_away(const gap_view *g, int64_t k)
+{
+    const double *n = g->b->normal[k], back[3] = { -n[0], -n[1], -n[2] };
+    return tobi_boundary_near(g->s, g->body, g->b->point[k], back, g->s->smoothing.h) & g->kind;
+}
+
 /* totals: area of the rim; of its wet part area, place, pressure of rest. */
 static void sum_rim(const void *view, int64_t begin, int64_t end, double *totals)
 {
@@ -47,6 +55,7 @@ static void sum_rim(const void *view, int64_t begin, int64_t end, double *totals
         const double area = b->area[k];
         if (p->gap || !(area > 0) || b->wet[k] == TOBI_BURIED) continue;
         if (!(tobi_boundary_near(g->s, g->body, b->point[k], NULL, g->s->smoothing.h) & g->kind)) continue;
+        if (is_dry(p) && looks_away(g, k)) continue;
         p->rim |= (uint8_t)g->kind;
         totals[0] += area;
         if (is_dry(p)) continue;
