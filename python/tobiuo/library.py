@@ -103,9 +103,11 @@ def values_of(struct):
     return out
 
 
-def vector(values, what):
+def vector(values, what, allowed=(2, 3)):
     """Three doubles for C. In 2-D two will do."""
+    if np.ndim(values) != 1 or len(values) not in allowed:
+        count = f"{len(values)} numbers" if np.ndim(values) == 1 else repr(values)
+        hint = "2 or 3 are allowed" if 2 in allowed else "3 are allowed; in 2-D it is the third"
+        raise ValueError(f"{what}: {count}, {hint}")
     values = [float(v) for v in values]
-    if len(values) not in (2, 3):
-        raise ValueError(f"{what}: {len(values)} numbers, 2 or 3 are allowed")
     return ffi.new("double[3]", values + [0.0]*(3 - len(values)))

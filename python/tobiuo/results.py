@@ -54,6 +54,8 @@ class Results:
         return np.array([lib.tobi_results_time(self._results, k) for k in range(len(self))])
 
     def __getitem__(self, output):
+        if isinstance(output, slice):
+            return [self[k] for k in range(len(self))[output]]
         if not -len(self) <= output < len(self):
             raise IndexError(f"output {output} of {len(self)}")
         m = ffi.new("tobi_moment *")

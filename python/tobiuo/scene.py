@@ -5,12 +5,23 @@ import os
 from .library import Error, call, ffi, lib, raise_error, take_text, text_of
 
 
+def _plain(value):
+    """What json does not know: numbers and arrays of NumPy."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{value!r} is nothing that a scene holds; allowed are numbers, texts, lists, dicts and arrays")
+
+
+def _to_json(value):
+    return json.dumps(value, default=_plain)
+
+
 def _overrides(values):
     """{"spacing": 0.01} as the texts "spacing=0.01"; a list of such texts stays."""
     if values is None:
         return ffi.NULL, []
     if isinstance(values, dict):
-        values = [f"{key}={value if isinstance(value, str) else json.dumps(value)}" for key, value in values.items()]
+        values = [f"{key}={value if isinstance(value, str) else _to_json(value)}" for key, value in values.items()]
     elif isinstance(values, str):
         values = [values]
     kept = [ffi.new("char[]", text.encode()) for text in values]
@@ -22,7 +33,7 @@ def _read(scene, values, name):
     out, report, error = ffi.new("tobi_scene **"), ffi.new("tobi_report **"), ffi.new("tobi_error *")
     texts, kept = _overrides(values)
     if isinstance(scene, dict):
-        scene, name = json.dumps(scene), name or "scene.json"
+        scene, name = _to_json(scene), name or "scene.json"
     scene = os.fspath(scene)
     if name or scene.lstrip().startswith("{"):
         data = scene.encode()

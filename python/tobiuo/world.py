@@ -83,9 +83,10 @@ class Body:
         return array_of(vertices[0], (counts[0], 3)), array_of(triangles[0], (counts[1], 3), np.int32)
 
     def set_force(self, force, torque=(0, 0, 0)):
-        """A constant force (N, on the centre of mass) and torque (N m), from the next step on."""
+        """A constant force (N, on the centre of mass) and torque (N m; in 2-D its third number), from the next step
+        on."""
         self._world._call(lib.tobi_world_set_body_force, self._number, vector(force, "force"),
-                          vector(torque, "torque"))
+                          vector(torque, "torque", (3,)))
 
     def set_motion(self, function):
         """Another motion of a body that was defined with one: function(t, rest) returns the places (m, n x 3) of

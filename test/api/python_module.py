@@ -265,6 +265,7 @@ class Module(unittest.TestCase):
         self.assertAlmostEqual(table["position_y"][-1], world.bodies["float"].position[1], 8)
         self.assertEqual(list(results.table()["time"]), [0, 0.05, 0.1])
         self.assertEqual(results.table("bodies")["name"], ["float"]*3)
+        self.assertEqual([one.time for one in results[1:]], [0.05, 0.1])
         with self.assertRaises(IndexError):
             results[3]
         with self.assertRaisesRegex(KeyError, "float"):
@@ -321,7 +322,8 @@ class Module(unittest.TestCase):
             self.assertEqual(list(world.ids()), list(range(600)))
             for wrong, text in ((lambda: world.write("velocity", velocity[1:]), "599 rows for 600"),
                                 (lambda: world.read("position", of="air"), "fluid, bodies"),
-                                (lambda: world.set_gravity([1]), "1 numbers")):
+                                (lambda: world.set_gravity([1]), "1 numbers"),
+                                (lambda: world.set_gravity(-9.81), "gravity: -9.81, 2 or 3 are allowed")):
                 with self.assertRaisesRegex(ValueError, text):
                     wrong()
             with self.assertRaisesRegex(tobiuo.Error, "there is no field 'colour'"):
@@ -338,6 +340,9 @@ class Module(unittest.TestCase):
                 world.step(0.01)
             self.assertAlmostEqual(ball.position[2], 2.2, 1)
             self.assertGreater(ball.position[2], 2.1)
+            for torque in (2, [0, 2]):
+                with self.assertRaisesRegex(ValueError, "torque: .* 3 are allowed; in 2-D it is the third"):
+                    ball.set_force([0, 0, 0], torque)
             self.assertEqual(ball.inertia.shape, (3, 3))
             parts = {"kinetic", "potential", "power", "contact_power", "motion_power", "force_power", "air_power",
                      "field_power", "nest_power"}
@@ -434,6 +439,10 @@ class Module(unittest.TestCase):
         lines = tobiuo.check({**POOL, "spacing": -1, "fluids": [{"name": "water", "fill": [], "colour": 1}]})
         self.assertTrue(any("spacing: is -1" in line for line in lines) and any("colour" in line for line in lines))
         self.assertEqual(tobiuo.check(POOL), [])
+        arrays = {**POOL, "domain": {k: np.array(v) for k, v in POOL["domain"].items()}}
+        self.assertEqual(tobiuo.check(arrays, set={"spacing": np.float32(POOL["spacing"]), "end_time": np.int64(1)}), [])
+        with self.assertRaisesRegex(TypeError, "nothing that a scene holds"):
+            tobiuo.check({**POOL, "spacing": {1, 2}})
         self.assertIn("none.json", tobiuo.check("none.json")[0])
         with self.assertRaisesRegex(tobiuo.Error, "spacing: is the text") as caught:
             tobiuo.World(POOL, set="spacing=thick")
