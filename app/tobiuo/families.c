@@ -108,8 +108,8 @@ static void put_output(const family_choice *c, FILE *out)
     fprintf(out, "  \"output\": { \"interval\": %.10g }\n}\n", chosen(c, "until")/100);
 }
 
-static const char above[] = TEXT("the water is higher than the tank");
-static const char beyond[] = TEXT("the water is longer than the tank");
+static const char above[] = TEXT("the water is higher than the tank, --height");
+static const char beyond[] = TEXT("the water is longer than the tank, --length");
 
 /* --- static pressure ----------------------------------------------------------------------- */
 

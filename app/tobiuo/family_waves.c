@@ -99,7 +99,7 @@ static plan make_plan(const family_choice *c)
 const char *object_wave(const family_choice *c)
 {
     const double depth = chosen(c, "depth");
-    if (depth > chosen(c, "height")) return TEXT("the water is higher than the tank");
+    if (depth > chosen(c, "height")) return TEXT("the water is higher than the tank, --height");
     if (chosen(c, "wave-height") > 0.78*depth)
         return TEXT("--wave-height is more than 0.78 of --depth: such waves break");
     if (!(chosen(c, "period") > 0) && (is_given(c, "ramp") || is_given(c, "beach")))

@@ -56,6 +56,15 @@ static int asks_help(const char *text)
     return 0;
 }
 
+static int is_shipped(const char *name)
+{
+    char file[128];
+    snprintf(file, sizeof file, "%.100s/scene.json", name);
+    char *shipped = tobi_scene_shipped(file);
+    free(shipped);
+    return shipped != NULL;
+}
+
 int wants_family(int argc, char **argv)
 {
     int options = 0;
@@ -66,12 +75,7 @@ int wants_family(int argc, char **argv)
         if (!name && !is_option(argv[k])) name = argv[k];
     }
     if (options || !name || !find_family(name)) return options > 0;
-    char file[128];
-    snprintf(file, sizeof file, "%.100s/scene.json", name);
-    char *shipped = tobi_scene_shipped(file);
-    const int alone = !shipped;
-    free(shipped);
-    return alone;
+    return !is_shipped(name);
 }
 
 /* --- the list ------------------------------------------------------------------------------ */
@@ -196,6 +200,11 @@ static int read_arguments(family_choice *c, int argc, char **argv, const char **
     c->family = name < argc ? find_family(argv[name]) : NULL;
     if (!c->family) {
         const char *given = name < argc ? argv[name] : "", *near = near_family(given);
+        if (name < argc && is_shipped(given)) {
+            complain("%s is a shipped scene: it takes no options; copy it, then change its scene.json, or "
+                     "give \"tobiuo run\" --set", given);
+            return EXIT_USAGE;
+        }
         complain("there is no family '%s'%s%s%s; \"tobiuo new\" lists them", given,
                  near ? tr("; did you mean ") : "", near ? near : "", near ? "?" : "");
         return EXIT_USAGE;

@@ -366,7 +366,8 @@ static tobi_status note_frame(tobi_world *w, double most, double when, tobi_erro
     char text[TOBI_NOTE];
     if (!w->drive->frame || !(weight > 0) || most <= HARD_FRAME*weight) return TOBI_OK;
     snprintf(text, sizeof text, tr("presses the liquid with up to %.3g m/s2, %.2g times gravity, at t = %.3g "
-             "s; if that is not meant, check the units of its motion\n"), most, most/weight, when);
+             "s; if that is not meant, check the units of its motion, and let it begin and end at rest\n"),
+             most, most/weight, when);
     return tobi_world_add_notes(w, "frame", NULL, text, err);
 }
 

@@ -76,7 +76,7 @@ tobi_status tobi_openings_note_pools(tobi_world *w, tobi_error *err)
 }
 
 /* Whether an outlet with a pressure has liquid before its plane, less than that beyond it, and nothing that
-   moves it there: gravity, or its velocity. */
+   moves it there: gravity, an inlet, or its velocity. */
 static int stays_dry(const tobi_system *s, const tobi_opening *o)
 {
     const double *g = s->sim->def.gravity;
@@ -93,8 +93,9 @@ static int stays_dry(const tobi_system *s, const tobi_opening *o)
         before++;
         out += v->x*o->normal[0] + v->y*o->normal[1] + v->z*o->normal[2];
     }
-    const int falls = g[0]*g[0] + g[1]*g[1] + g[2]*g[2] > 0;
-    return beyond < before && (falls ? out < 0 : out <= 0);
+    int driven = g[0]*g[0] + g[1]*g[1] + g[2]*g[2] > 0;
+    for (int k = 0; k < s->sim->opening_count; k++) driven |= !s->sim->openings[k].outlet;
+    return beyond < before && (driven ? out < 0 : out <= 0);
 }
 
 /* The pressure of an outlet acts by the particles beyond its plane, and new ones there are copies of them. */

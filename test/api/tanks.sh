@@ -31,6 +31,7 @@ check "2-D and another method" test -s dam_break_2d_PS0d02_dfsph/scene.json
 expect 0 "" new lobovsky --gate-speed 3 --spacing 0.03 gated
 expect 0 "" run gated --quiet --until 0.01 --out out_gated
 expect 2 "there is no family 'slosing'; did you mean sloshing?" new slosing --spacing 1
+expect 2 "ball_drop is a shipped scene: it takes no options" new ball_drop --spacing 0.02 ball
 expect 2 "sloshing has no option --spcing; did you mean --spacing?" new sloshing --spcing 0.1
 expect 2 "--spacing wants a value" new sloshing --spacing
 expect 2 "--dimension: '4' is not a whole number from 2 to 3" new sloshing --dimension 4
@@ -43,8 +44,8 @@ expect 2 "'isp' is no method of liquids; did you mean isph?" new sloshing --meth
 expect 2 "one FAMILY and one DIR only" new sloshing --angle 5 a b
 expect 2 "one SCENE only; a value is changed by --set cfl=0.2,0.4" sweep scene.json cfl=0.2,0.4
 expect 1 "kamra is 3-D only" new kamra --dimension 2
-expect 1 "the water is higher than the tank" new static_pressure --depth 9
-expect 1 "the water is longer than the tank" new dam_break --water-length 1
+expect 1 "the water is higher than the tank, --height" new static_pressure --depth 9
+expect 1 "the water is longer than the tank, --length" new dam_break --water-length 1
 expect 1 "the water reaches the post" new kamra --water-length 0.7
 expect 2 "--post: '0.5' is not a whole number from 0 to 2" new kamra --post 0.5
 expect 1 "the box does not fit" new wave_impact --box-at 3.2
