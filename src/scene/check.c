@@ -53,6 +53,10 @@ static void check_rules(const tobi_scene *scene, tobi_source *source)
     if (w->dimension == 2 && w->gravity[2] != 0)
         tobi_source_mistake(source, &gravity, "is %.10g m/s2 in z, must be 0 in a 2-D scene",
                             w->gravity[2]);
+    if (w->dimension == 2 && (w->wall_min[2] != TOBI_WALL_SLIP || w->wall_max[2] != TOBI_WALL_SLIP)) {
+        tobi_place domain = { &root, "domain", 0 }, walls = { &domain, "walls", 0 }, z = { &walls, "z", 0 };
+        tobi_source_mistake(source, &z, "is of 3-D scenes; a 2-D scene has sides in x and y");
+    }
 }
 
 /* A file that the scene names: reported here, with all other mistakes, and not at the start. */

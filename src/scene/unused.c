@@ -11,6 +11,7 @@ typedef enum reader {
     FORCES,          /* bodies that move by forces                */
     BLADE,           /* bodies that cut                           */
     VESSEL,          /* bodies that hold liquid                   */
+    LIGHT,           /* bodies without a mass of their own        */
     RISE,            /* sand whose friction rises with its flow   */
     SLOPE,           /* solids that break; sand always has one    */
     FLIP, XPIC,      /* ways to the grid and back                 */
@@ -51,6 +52,7 @@ static const struct {
     EDGE("edge_resistance"), EDGE("edge_angle"), EDGE("edge_start"), EDGE("edge_end"),
 #undef EDGE
     { "body", "wall_thickness", VESSEL, TR("is for a vessel, which this body is not") },
+    { "body", "density", LIGHT, TR("is given beside mass; one of them is enough") },
     { "body", "open_side", VESSEL, TR("is for a vessel, which this body is not") },
 #define RISING(key) { "solid", key, RISE, TR("is for a friction_rise, which this solid has not") }
     RISING("grain_diameter"), RISING("inertial_number"),
@@ -126,6 +128,7 @@ static int is_there(const tobi_scene *scene, const void *def, reader who)
     case BLADE: return body->blade;
     case VESSEL: return body->vessel || (!(body->wall_thickness > 0) && !body->open_side[0] &&
                                          !body->open_side[1] && !body->open_side[2]);
+    case LIGHT: return !(body->mass > 0);
     case RISE: return !tobi_solid_uses(solid->model, "friction_rise") || solid->friction_rise > 0;
     case SLOPE: return !tobi_solid_uses(solid->model, "strength") || solid->strength > 0;
     case FLIP: return !solids || solids->transfer == TOBI_FLIP;

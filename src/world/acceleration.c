@@ -103,6 +103,9 @@ tobi_status tobi_world_set_gravity_in_time(tobi_world *w, const tobi_gravity_def
 {
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
+    if (w->sim.def.dimension == 2 && def->amplitude[2] != 0)
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "gravity in time swings along z, which a 2-D "
+                                          "world has not; allowed are x and y"), "gravity_in_time");
     TOBI_TRY(need_drive(w, tr("gravity in time"), err));
     free_gravity(w->drive);
     return make_gravity(def, w->drive, err);

@@ -20,6 +20,9 @@ static tobi_status check_gravity(const tobi_world_def *d, tobi_error *err)
         if (!(fabs(d->gravity[a]) <= most))
             return tobi_fail(err, TOBI_INVALID, "gravity is (%g, %g, %g) m/s2; allowed are numbers from "
                              "%g to %g", d->gravity[0], d->gravity[1], d->gravity[2], -most, most);
+    if (d->dimension == 2 && d->gravity[2] != 0)
+        return tobi_fail(err, TOBI_INVALID, "gravity is %g m/s2 in z, must be 0 in a 2-D world",
+                         d->gravity[2]);
     const tobi_status status = tobi_limits_gravity(d, &why);
     return status ? tobi_fail(err, status, "gravity %s", why.text) : TOBI_OK;
 }
@@ -50,7 +53,6 @@ tobi_status tobi_world_set_gravity(tobi_world *w, const double gravity[3], tobi_
     tobi_world_def def = s->def;
     memcpy(def.gravity, gravity, sizeof def.gravity);
     TOBI_TRY(check_gravity(&def, err));
-    if (def.dimension == 2) def.gravity[2] = 0;
     if (memcmp(def.gravity, s->def.gravity, sizeof def.gravity) == 0) return TOBI_OK;
     TOBI_TRY(tobi_world_check_whole(w, err));
     if (s->step > 0) TOBI_TRY(tobi_world_refresh(w, err));

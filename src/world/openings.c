@@ -222,15 +222,19 @@ static tobi_status check_bodies(const tobi_world *w, const tobi_opening *o, tobi
     return TOBI_OK;
 }
 
+static tobi_status check_method(const tobi_world *w, tobi_error *err)
+{
+    if (!w->system[0].method->solids) return TOBI_OK;
+    return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no inlets and outlets; the SPH methods have",
+                     w->system[0].method->name);
+}
+
 static tobi_status add(tobi_world *w, const tobi_opening *o, int limit, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
     int same = 0;
     for (int k = 0; k < s->opening_count; k++) same += s->openings[k].outlet == o->outlet;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more inlets and outlets");
-    if (w->system[0].method->solids)
-        return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no inlets and outlets; the SPH methods have",
-                         w->system[0].method->name);
     if (same >= limit) return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d %s", limit,
                                         o->outlet ? tr("outlets") : tr("inlets"));
     TOBI_TRY(tobi_names_check_opening(w, o->outlet, o->name, err));
@@ -310,6 +314,7 @@ tobi_status tobi_world_add_inlet(tobi_world *w, const tobi_inlet_def *def, tobi_
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
     TOBI_TRY(tobi_param_check(&tobi_inlet_table, def, err));
+    TOBI_TRY(check_method(w, err));
     tobi_status status = make_inlet(w, def, &o, err);
     if (status == TOBI_OK) status = add(w, &o, TOBI_INLET_LIMIT, err);
     if (status != TOBI_OK) free_opening(&o);
@@ -321,6 +326,7 @@ tobi_status tobi_world_add_outlet(tobi_world *w, const tobi_outlet_def *def, tob
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
     TOBI_TRY(tobi_param_check(&tobi_outlet_table, def, err));
+    TOBI_TRY(check_method(w, err));
     const tobi_box *box = &w->system[0].box;
     tobi_opening o = { .outlet = 1, .level = def->level, .pressure = def->pressure };
     const int pressure = def->pressure >= 0, level = def->level > TOBI_NO_LEVEL;

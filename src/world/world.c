@@ -49,6 +49,15 @@ static tobi_status create_simulation(tobi_simulation *s, const tobi_world_def *d
     return tobi_exec_init(&s->exec, def->threads, err);
 }
 
+/* The default of a definition is along z. */
+static tobi_status note_flat_gravity(tobi_world *w, const tobi_world_def *def, tobi_error *err)
+{
+    const double *g = def->gravity;
+    if (def->dimension != 2 || g[2] == 0 || g[0] != 0 || g[1] != 0) return TOBI_OK;
+    return tobi_world_add_notes(w, "world", "gravity", tr("is along z alone, and a 2-D world has no z: "
+                                "nothing falls; (0, -9.81, 0) m/s2 is down\n"), err);
+}
+
 static tobi_status refuse_method(const char *name, tobi_error *err)
 {
     char known[200] = "";
@@ -77,8 +86,10 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
         tobi_world_destroy(w);
         return status;
     }
-    *world = w;
-    return TOBI_OK;
+    status = note_flat_gravity(w, def, err);
+    if (status != TOBI_OK) tobi_world_destroy(w);
+    else *world = w;
+    return status;
 }
 
 void tobi_world_destroy(tobi_world *w)

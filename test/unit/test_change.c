@@ -271,7 +271,9 @@ static void bodies_feel_it(void **state)
     OK(tobi_world_create(&def, NULL, &world, &err));
     add_body(world, "left", 5, 5, TOBI_FREE);
     OK(tobi_world_step(world, 1e-3, NULL, &err));
-    OK(tobi_world_set_gravity(world, (double[3]){ 0, 0, 7 }, &err));      /* z is not there */
+    REFUSED(tobi_world_set_gravity(world, (double[3]){ 0, 0, 7 }, &err), TOBI_INVALID,
+            "gravity is 7 m/s2 in z, must be 0 in a 2-D world");
+    OK(tobi_world_set_gravity(world, (double[3]){ 0 }, &err));
     OK(tobi_world_body(world, 0, &a));
     OK(tobi_world_step(world, 1e-3, NULL, &err));
     OK(tobi_world_body(world, 0, &b));
@@ -294,6 +296,16 @@ static tobi_status mute(void *user, double t, int64_t n, const double (*rest)[3]
     return TOBI_SCRIPT;
 }
 
+/* That of the defaults, which a 2-D world has not. */
+static void gravity_along_z_is_told(void)
+{
+    const tobi_world_def spare = make_def("dfsph", (double[3]){ 0, 0, -9.81 });
+    tobi_world *w;
+    OK(tobi_world_create(&spare, NULL, &w, &err));
+    assert_non_null(strstr(tobi_world_note(w, 0), "'gravity': is along z alone, and a 2-D world has no z"));
+    tobi_world_destroy(w);
+}
+
 static void refusals(void **state)
 {
     (void)state;
@@ -302,6 +314,7 @@ static void refusals(void **state)
     tobi_world *world = make_world("dfsph", DOWN);
     OK(tobi_world_advance(world, 0.01, NULL, &err));
     const uint64_t hash = tobi_world_hash(world);
+    gravity_along_z_is_told();
     REFUSED(tobi_world_set_gravity(NULL, zero, &err), TOBI_INVALID, "world is NULL");
     REFUSED(tobi_world_set_gravity(world, NULL, &err), TOBI_INVALID, "the gravity is NULL");
     REFUSED(tobi_world_set_gravity(world, nan, &err), TOBI_INVALID,

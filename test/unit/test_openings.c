@@ -371,6 +371,7 @@ static void test_wrong_calls(void **state)
     out.radius = 0.1;
     assert_int_equal(tobi_world_add_outlet(w, &out, &err), TOBI_UNSUPPORTED);
     assert_non_null(strstr(err.text, "mlsmpm has no inlets and outlets; the SPH methods have"));
+    assert_int_equal(tobi_world_add_inlet(w, &in, &err), TOBI_UNSUPPORTED);
     tobi_world_destroy(w);
 }
 

@@ -253,13 +253,13 @@ static void bodies_and_motions(void **state)
 static void rules_between_values(void **state)
 {
     (void)state;
-    CHECK("{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.1,\n"
-          "\"end_time\": 1, \"gravity\": [0, -9.81, 1],\n"
+    CHECK("{ \"dimension\": 2, \"domain\": {\"min\":[0,0],\"max\":[1,1],\"walls\":{\"z\":\"no-slip\"}},\n"
+          "\"spacing\": 0.1, \"end_time\": 1, \"gravity\": [0, -9.81, 1],\n"
           "\"dfsph\": { \"divergence_iterations_min\": 9, \"divergence_iterations_max\": 3 },\n"
           "\"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 1] },\n"
           "\"velocity\": [0, 0, 1] } ] } ],\n"
           "\"output\": { \"surface\": { \"write\": true, \"fields\": [\"sped\"] } } }",
-          { "s.json:2:27: gravity: ", "is 1 m/s2 in z, must be 0 in a 2-D scene" },
+          { "s.json:1:67: domain.walls.z: ", "is of 3-D" }, { "s.json:2:43: gravity: ", "is 1 m/s2 in z" },
           { "s.json:3:41: dfsph.divergence_iterations_min: ",
             "is 9, must not be above divergence_iterations_max, 3" },
           { "s.json:4:38: fluids[0].fill[0]: ", "moves in z, which a 2-D scene does not have" },

@@ -79,8 +79,9 @@ static void bad_gravity_is_refused(void **state)
     REFUSED(tobi_world_set_gravity_in_time(w, &g, &err), TOBI_INVALID, "needs a file or an amplitude");
     g.amplitude[0] = 1;
     REFUSED(tobi_world_set_gravity_in_time(w, &g, &err), TOBI_INVALID, "an amplitude without a period");
-    g.amplitude[0] = 0;
-    g.period = 1;
+    g.amplitude[2] = g.period = 1;
+    REFUSED(tobi_world_set_gravity_in_time(w, &g, &err), TOBI_INVALID, "swings along z, which a 2-D world");
+    g.amplitude[0] = g.amplitude[2] = 0;
     g.file = "gravity.csv";
     REFUSED(tobi_world_set_gravity_in_time(w, &g, &err), TOBI_INVALID, "a period without an amplitude");
     g.period = 0;
