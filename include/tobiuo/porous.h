@@ -24,6 +24,7 @@ typedef struct tobi_porous_def {
     double screen_loss;               /* 1: of a screen, pressure over rho u^2/2                       */
     double linear, quadratic;         /* 1/s, 1/m: a and b themselves                                  */
     double direction[3];              /* of stems, or across a screen; 0 = upwards, or the thin side */
+    const char *body;                 /* name of one added before, that it goes along with; NULL: it stays */
 } tobi_porous_def;
 
 /* A porous zone; force, power and volume of the last step, in 2-D per m; 0 after a load. */
@@ -36,6 +37,7 @@ typedef struct tobi_porous_info {
     int    along;                     /* 1: the direction resists, 0: what is across it                */
     int    radial;                    /* 1: what resists is away from an axis, which has the direction */
     double extent;                    /* m3, in 2-D m2: of the zone itself                             */
+    const char *body;                 /* that carries it; NULL = none                                  */
 } tobi_porous_info;
 
 #ifdef __cplusplus

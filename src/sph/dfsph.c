@@ -1,10 +1,10 @@
-/* DFSPH (Bender & Koschier 2015, 2017): a divergence-free velocity and a constant density, by two
-   pressure equations that share one symmetric matrix-free operator. Two things differ from the paper:
-   - The density equation moves positions and leaves velocities alone. In the paper its correction
-     e/dt enters the velocity, so that every rearrangement of particles becomes kinetic energy and the
-     pressure carries the noise of e/dt^2. Here pressure is what makes the velocity divergence-free.
-   - Conjugate gradients with warm start replace the Jacobi sweeps: the same two pair passes per
-     iteration. A multigrid cycle preconditions them, so that iterations hardly grow with the depth.
+/* DFSPH (Bender & Koschier 2015, 2017): a divergence-free velocity and a constant density, by two pressure
+   equations that share one symmetric matrix-free operator. Two things differ from the paper:
+   - The density equation moves positions and leaves velocities alone. In the paper its correction e/dt
+     enters the velocity, so that rearrangements of particles become kinetic energy and the pressure carries
+     the noise of e/dt^2. Here pressure is what makes the velocity divergence-free.
+   - Conjugate gradients with warm start replace the Jacobi sweeps: the same two pair passes per iteration. A
+     multigrid cycle preconditions them, so that iterations hardly grow with the depth.
    Drawback: a free surface is an active set chosen at the start of a solve, not during it. */
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
@@ -15,6 +15,7 @@
 #include "sph/kernels.h"
 #include "sph/openings.h"
 #include "sph/porous.h"
+#include "sph/porous_carry.h"
 #include "sph/stages.h"
 #include "sph/reference.h"
 #include "sph/undo.h"
@@ -53,9 +54,8 @@ typedef struct dfsph {
     const sph_kernels *kernel;
     tobi_multigrid grid;
     sph_undo undo;
-    /* survives a restart */
-    struct { double speed, head, dt, vessel, low, level, open; } memory;   /* vessel: SPH_VESSEL_*; the
-                                     last three: drops of the free surface, still water, openings in it, m  */
+    /* survives a restart; vessel: SPH_VESSEL_*; last: drops of the free surface, still water, openings, m */
+    struct { double speed, head, dt, vessel, low, level, open; } memory;
     /* of the step at hand */
     double motion_dt;             /* step that motion alone allows, s                            */
     double diagonal;              /* mean diagonal of the operator                               */
@@ -214,9 +214,9 @@ static double apply(void *user)
 {
     const cg_run *c = user;
     launch(c->s, c->m, c->m->kernel->sph_pressure_accel, NULL);
+    if (c->q->coupled) tobi_couple_press(c->s);
     launch(c->s, c->m, c->m->kernel->sph_product, c->t);
-    if (c->q->coupled) tobi_couple_product(c->s, c->t);
-    if (c->q->coupled) sph_soft_product(c->s, c->t);
+    if (c->q->coupled) tobi_couple_product(c->s, c->t), sph_soft_product(c->s, c->t);
     center(c->s, c->m, c->q, c->m->kernel->sph_center_product, c->t[1], c->t);
     return c->t[0];
 }
@@ -327,6 +327,7 @@ static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
     m->view.pressure = sph_fields_of(&s->particles)->pressure;
     launch(s, m, k->sph_warm_start, NULL);
     launch(s, m, k->sph_pressure_accel, NULL);
+    tobi_couple_press(s);
     launch(s, m, k->sph_source, t);
     linear_solve q = {.tolerance = first_share(s, m)*m->def.divergence_tolerance,
                .relative_tolerance = first_share(s, m)*m->def.pressure_tolerance,
@@ -336,12 +337,11 @@ static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
                .grid = 1,
                .coupled = 1,
                .constant_free = m->memory.vessel == SPH_VESSEL_FULL};
-    tobi_couple_product(s, NULL);
-    sph_soft_product(s, NULL);
+    tobi_couple_product(s, NULL), sph_soft_product(s, NULL);
     launch(s, m, k->sph_warm_residual, t);
     set_grid(s, m);
     solve_pressure(s, m, t, &q);
-    launch(s, m, k->sph_pressure_kick, t);
+    sph_porous_kick(s, &m->view, k, t);
     s->info.force_sum = t[0]*s->smoothing.volume;
     m->memory.head = fmin(q.head, sph_explained_head(s));
     s->info.divergence_iterations = q.iterations;
@@ -397,8 +397,8 @@ static void correct_density(tobi_system *s, dfsph *m, double *clock)
 }
 
 /* Before the first step: a lattice cut by a body has gaps along it that water would leak through, and pairs
-   that crowd. Near bodies the shift of (12) takes place without time passing. Bodies that move by forces
-   set off slowly and gain nothing, decision 31. */
+   that crowd. Near bodies the shift of (12) takes place without time passing. Bodies that move by forces set
+   off slowly and gain nothing, decision 31. */
 static tobi_status relax_lattice(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
 {
     const tobi_simulation *w = s->sim;

@@ -4,10 +4,10 @@
 
 /* Scenes with surface tension; liquids with bodies in them; inlets and outlets; several liquids;
    implicit viscosity; the filter (13b) with a free surface; liquids whose viscosity depends on the flow;
-   porous zones; temperature or concentration. */
+   porous zones; temperature or concentration; isph with porous zones that bodies carry. */
 enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2, SPH_NEED_OPENINGS = 4, SPH_NEED_PHASES = 8,
        SPH_NEED_IMPLICIT = 16, SPH_NEED_FILTER = 32, SPH_NEED_APPARENT = 64,
-       SPH_NEED_POROUS = 128, SPH_NEED_SCALARS = 256 };
+       SPH_NEED_POROUS = 128, SPH_NEED_SCALARS = 256, SPH_NEED_CARRIED = 512 };
 
 /* Stages of a step: boundaries; density; forces; the pressure by an equation, or by that of state; the
    correction of positions; forces on walls and bodies, new positions. Between steps: a derived output. */
@@ -88,9 +88,14 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
     X(tobi_float4, TOBI_F32, 4, porous_before, TOBI_SCRATCH, SPH_NEED_POROUS, "m/s", \
       "velocity before the step; w: 1 + number of its zone, 0: none, -1: held") \
     X(tobi_float4, TOBI_F32, 4, porous_taken, TOBI_SCRATCH, SPH_NEED_POROUS, "m/s", \
-      "what zones have taken of the velocity in the step; isph alone") \
+      "what zones have taken of the velocity in the step; of isph, and of zones that bodies carry") \
     X(tobi_float4, TOBI_F32, 4, porous_kept,  TOBI_SCRATCH, SPH_NEED_POROUS, "m/s", \
-      "velocity before the pressure; isph alone") \
+      "velocity before the pressure; likewise") \
+    X(tobi_float4, TOBI_F32, 4, zone_push,    TOBI_SCRATCH, SPH_NEED_CARRIED, "m2", \
+      "z, eq. (9) of porous.md: force of its pressure on the carrier; w: the number of that from 1") \
+    X(tobi_float4, TOBI_F32, 4, zone_turn,    TOBI_SCRATCH, SPH_NEED_CARRIED, "m3", "z: the torque") \
+    X(tobi_float4, TOBI_F32, 4, zone_fall,    TOBI_SCRATCH, SPH_NEED_CARRIED, "N", \
+      "what zones take of gravity") \
     X(tobi_double2, TOBI_F64, 2, scalars,     TOBI_STATE,   SPH_NEED_SCALARS, "1", \
       "temperature, concentration") \
     X(tobi_float4, TOBI_F32, 4, scalar_now,   TOBI_SCRATCH, SPH_NEED_SCALARS, "1", \

@@ -18,6 +18,7 @@ typedef struct sph_state {
     int marked;                     /* 1: the `held` of particles is that of the present rows       */
     tobi_float4 normal[TOBI_OPENING_LIMIT + 1];  /* of openings; none of the rim of a nest          */
     int mirrors;                    /* 1: walls are mirrors (isph), 0: integrals of the kernel          */
+    int zones_answer;               /* 1: porous zones that bodies carry are known, until their force is    */
     int full;                       /* 1: there was no free surface at the start                        */
     int past_edges;                 /* 1: pairs past blunt edges of bodies stay, boundary/pairs.c     */
 } sph_state;

@@ -194,6 +194,16 @@ static void measure_forces(tobi_system *s, wcsph *m, double *clock)
     m->view.pressure = f->pressure = state;
 }
 
+/* The bodies' velocities with the forces of this step, where zones that they carry answer. */
+static void expect_bodies(tobi_system *s)
+{
+    sph_fields *f = sph_fields_of(&s->particles);
+    float *state = f->pressure;
+    f->pressure = f->damped;
+    tobi_couple_expect(s);
+    f->pressure = state;
+}
+
 static void shift_positions(tobi_system *s, wcsph *m, double *clock)
 {
     m->view.background = 0;
@@ -235,6 +245,7 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     sph_soft_begin(s, 0);
     apply_pressure(s, s->state, &clock);
     sph_porous_brake(s);
+    expect_bodies(s);
     sph_porous_measure(s);
     return TOBI_OK;
 }

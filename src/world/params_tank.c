@@ -95,6 +95,9 @@ static const tobi_param porous_rows[] = {
     { .key = "direction", VEC3, AT(tobi_porous_def, direction), DIRECTION, .unit = "1",
       .doc = "Along stems, or across a screen. 0: stems stand upwards, a screen lies across the thinnest "
              "side of its box, along the longest side of its outline, or around its ring." },
+    { .key = "body", TEXT, AT(tobi_porous_def, body), .unit = "name",
+      .doc = "Name of the body that carries the zone, as both are placed at the start. The drag acts on the "
+             "velocity against it, and on it." },
     { 0 }
 };
 

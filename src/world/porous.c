@@ -101,6 +101,25 @@ static tobi_status fill_zone(const tobi_world *w, const tobi_porous_def *def, to
     return check_drag(w, def->name, z, err);
 }
 
+/* The body that carries it. */
+static tobi_status find_carrier(const tobi_world *w, const tobi_porous_def *def, tobi_porous *z,
+                                tobi_error *err)
+{
+    if (!def->body) return TOBI_OK;
+    const int body = tobi_world_find_body(w, def->body);
+    if (body < 0)
+        return tobi_at_key(err, tobi_fail(err, TOBI_NOT_FOUND, "porous zone '%s' goes along with '%s', which "
+                                          "is no body", def->name, def->body), "body");
+    if (w->sim.bodies[body].deforms)
+        return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "porous zone '%s' goes along with '%s', "
+                                          "which changes its shape; allowed are rigid bodies", def->name,
+                                          def->body), "body");
+    z->carrier = body + 1;
+    z->answer.leads = 1;
+    for (int k = 0; k < w->sim.porous_count; k++) z->answer.leads &= w->sim.porous[k].carrier != z->carrier;
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_add_porous(tobi_world *w, const tobi_porous_def *def, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);
@@ -117,6 +136,7 @@ tobi_status tobi_world_add_porous(tobi_world *w, const tobi_porous_def *def, tob
     TOBI_TRY(tobi_names_check_porous(w, def->name, err));
     tobi_status status = tobi_porous_place(w, def, &z, err);
     if (status == TOBI_OK) status = fill_zone(w, def, &z, err);
+    if (status == TOBI_OK) status = find_carrier(w, def, &z, err);
     if (status == TOBI_OK) w->sim.porous[w->sim.porous_count++] = z;
     else free(z.corners);
     return status;
@@ -130,12 +150,46 @@ const char *tobi_world_porous(const tobi_world *w, int zone, tobi_porous_info *i
     if (!info) return z->name;
     *info = (tobi_porous_info){ .power = z->power, .volume = z->volume, .quadratic = z->quadratic,
                                 .linear = z->linear, .along = z->kind == TOBI_POROUS_ALONG,
-                                .extent = z->extent, .radial = z->radial };
+                                .extent = z->extent, .radial = z->radial,
+                                .body = z->carrier ? w->sim.bodies[z->carrier - 1].name : NULL };
     if (w->system[0].fluid_count > 0) info->linear += z->per_viscosity*f->viscosity/f->density;
     memcpy(info->force, z->force, sizeof info->force);
     if (z->kind != TOBI_POROUS_ALL) memcpy(info->direction, z->direction, sizeof info->direction);
     if (z->radial) info->direction[z->axis] = 1;
     return z->name;
+}
+
+void tobi_world_start_porous(tobi_world *w)
+{
+    for (int k = 0; k < w->sim.porous_count; k++) {
+        tobi_porous *z = &w->sim.porous[k];
+        if (z->carrier) tobi_porous_attach(z, &w->sim.bodies[z->carrier - 1]);
+    }
+}
+
+/* Of a body with a motion, the mean over the step. */
+static tobi_status ask_motion(const tobi_simulation *s, const tobi_body *b, tobi_porous *z, tobi_error *err)
+{
+    double centre[3], frame[3][3], *u = z->pose.now;
+    memset(u, 0, sizeof z->pose.now);
+    if (b->motion && s->dt > 0) {
+        TOBI_TRY(tobi_body_find_frame(b, s->time + s->dt, centre, frame, err));
+        for (int a = 0; a < 3; a++) u[a] = (centre[a] - b->centre[a])/s->dt;
+        tobi_frame_rate((const double (*)[3])b->frame, (const double (*)[3])frame, s->dt, u + 3);
+    }
+    memcpy(z->pose.speed, u, sizeof z->pose.speed);
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_carry_porous(tobi_world *w, tobi_error *err)
+{
+    for (int k = 0; k < w->sim.porous_count; k++) {
+        tobi_porous *z = &w->sim.porous[k];
+        const tobi_body *b = z->carrier ? &w->sim.bodies[z->carrier - 1] : NULL;
+        if (b) tobi_porous_follow(z, b);
+        if (b && b->rigid.kind == TOBI_PRESCRIBED) TOBI_TRY(ask_motion(&w->sim, b, z, err));
+    }
+    return TOBI_OK;
 }
 
 /* Whether liquid is in it at the start, or may come. */

@@ -270,6 +270,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     TOBI_TRY(tobi_motors_tell(w, s->time, s->dt, err));
     tobi_absorb_predict(w);
     TOBI_TRY(predict_bodies(s, err));
+    TOBI_TRY(tobi_world_carry_porous(w, err));
     s->changed = 1;
     remember_speed(w);
     TOBI_TRY(step_systems(w, substeps, err));

@@ -104,6 +104,10 @@ tobi_status tobi_porous_place(const tobi_world *w, const tobi_porous_def *def, t
    it is along z->direction, in the mean. porous_place.c */
 void tobi_porous_thin_direction(tobi_porous *z, int dimension, double direction[3]);
 double tobi_porous_thickness(const tobi_porous *z, int dimension);
+/* At the start: where the bodies that carry zones have them. When a step begins: where those are now, and how
+   fast. porous.c */
+void tobi_world_start_porous(tobi_world *w);
+tobi_status tobi_world_carry_porous(tobi_world *w, tobi_error *err);
 /* Adds a note for each porous zone that is thin, has stones, or no liquid in it. porous.c */
 tobi_status tobi_world_note_porous(tobi_world *w, tobi_error *err);
 /* Adds a note for each probe of a point that begins deep in a body. */

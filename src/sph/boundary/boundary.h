@@ -60,12 +60,15 @@ void tobi_boundary_sum(struct tobi_system *s, tobi_kernel kernel, const void *vi
 /* Forces and torques on all bodies by hydrostatic pressure of mirrors and surface tension, or by friction,
    all that does not wait for pressure: into the first six of links.total. */
 void tobi_boundary_known_forces(struct tobi_system *s, int viscous);
+/* The same by all of the pressure, or of the friction, of this step. */
+void tobi_boundary_forces(struct tobi_system *s, int viscous);
 /* Adds force and torque of the pressure and the friction of this step to this system's load on each body. */
 void tobi_boundary_load(struct tobi_system *s);
 
 /* --- how bodies that move by forces answer (docs/theory/rigid.md, R.11 to R.14) --------------- */
 
-/* A solve for the pressure has tobi_couple_product after each product; an equation of state has it known from
+/* A solve for the pressure has tobi_couple_press before and
+   tobi_couple_product after each product; an equation of state has it known from
    tobi_couple_begin, and the step bounded by tobi_couple_compliance (docs/theory/wcsph.md, eq. 25). */
 
 /* Whether any body moves by forces. */
@@ -82,7 +85,12 @@ void tobi_couple_obey(struct tobi_system *s, int moving);
 /* The bodies' velocities by all forces but this step's pressure, and the flux of the walls that they are,
    into particles.wall. */
 void tobi_couple_begin(struct tobi_system *s);
-/* Adds to particles.product how the bodies answer the pressures in the particles' records. totals (or NULL):
+/* The same with the pressure, for a liquid whose pressure has acted; walls stay as they are. */
+void tobi_couple_expect(struct tobi_system *s);
+/* Accelerations of the bodies by the pressures in the particles' records, and in zones that bodies carry by
+   those of the liquid, which get those of the bodies: before their divergence. */
+void tobi_couple_press(struct tobi_system *s);
+/* Adds to particles.product how the bodies answer the pressures, by tobi_couple_press. totals (or NULL):
    [0] and [1] receive what this adds to record.w times product and to the sum of products. */
 void tobi_couple_product(struct tobi_system *s, double *totals);
 /* Lets the bodies drift by the velocities that this system's load makes, not by those of the step's

@@ -4,6 +4,7 @@
 #include "sph/boundary/boundary.h"
 #include "sph/hydrostatic.h"
 #include "sph/kernels.h"
+#include "sph/porous_carry.h"
 #include "sph/state.h"
 #include "geom/vec3.h"
 #include <math.h>
@@ -91,6 +92,7 @@ void tobi_couple_join(tobi_system *s)
             double force[6] = { 0 }, moved[6];
             force[j] = 1;
             tobi_rigid_answer(&s->sim->bodies[c->body[k]].rigid, force, moved);
+            sph_porous_soften(s, c->body[k], moved);
             for (int i = 0; i < 6; i++) c->inverse[k][i][j] = moved[i];
         }
     if (c->count) tobi_constraints_factor(c, s->sim->bodies);
@@ -141,20 +143,57 @@ static void sum_known_forces(tobi_system *s)
     }
 }
 
-void tobi_couple_begin(tobi_system *s)
+static void predict_in_zones(tobi_system *s, int k, double f[6])
+{
+    sph_porous_add_known(s, k, f);
+    tobi_couple_predict(s, k, f);
+    sph_porous_answer(s, k);
+}
+
+static void begin(tobi_system *s)
 {
     const tobi_couple_view v = see_entries(s);
-    if (!tobi_couple_any(s)) return;
     sum_known_forces(s);
     for (int k = 0; k < s->sim->body_count; k++) {
         double f[6];
         memcpy(f, sph_of(s)->links.answer[k], sizeof f);
         if (moves(&s->sim->bodies[k])) sph_body_hydrostatic(s, k, f);
-        tobi_couple_predict(s, k, f);
+        predict_in_zones(s, k, f);
     }
     tobi_couple_join(s);
     tobi_couple_obey(s, 1);
     tobi_launch(&s->sim->exec, kernels_of(s)->couple_flux, &v, 0, s->particles.count, NULL);
+}
+
+void tobi_couple_begin(tobi_system *s)
+{
+    if (tobi_couple_any(s)) begin(s);
+    sph_porous_join(s);
+}
+
+static void expect(tobi_system *s)
+{
+    double (*sum)[6] = sph_of(s)->links.answer;
+    for (int viscous = 0; viscous < 2; viscous++) {
+        tobi_boundary_forces(s, viscous);
+        for (int k = 0; k < s->sim->body_count; k++)
+            for (int a = 0; a < 6; a++) sum[k][a] = (viscous ? sum[k][a] : 0) + sph_of(s)->links.total[k][a];
+    }
+    for (int k = 0; k < s->sim->body_count; k++) {
+        double f[6];
+        memcpy(f, sum[k], sizeof f);
+        if (moves(&s->sim->bodies[k])) sph_body_hydrostatic(s, k, f);
+        predict_in_zones(s, k, f);
+    }
+    tobi_couple_join(s);
+    tobi_couple_obey(s, 1);
+}
+
+void tobi_couple_expect(tobi_system *s)
+{
+    if (!sph_of(s)->zones_answer) return;
+    if (tobi_couple_any(s)) expect(s);
+    sph_porous_join(s);
 }
 
 typedef struct pressing { const tobi_system *s; tobi_kernel kernel; const tobi_couple_view *view; } pressing;
@@ -166,7 +205,7 @@ static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t
     if (moves(&p->s->sim->bodies[p->view->link[begin].body])) p->kernel.run(p->view, begin, end, t);
 }
 
-void tobi_couple_product(tobi_system *s, double *totals)
+void tobi_couple_press(tobi_system *s)
 {
     const tobi_boundary_links *n = &sph_of(s)->links;
     const tobi_couple_view v = see_entries(s);
@@ -177,9 +216,19 @@ void tobi_couple_product(tobi_system *s, double *totals)
     for (int k = 0; k < s->sim->body_count; k++) {
         memcpy(t, n->total[k], sizeof t);
         for (int a = 0; a < TOBI_SUMS; a++) t[a] *= 2*s->smoothing.volume;
+        sph_porous_sum_accelerations(s, k, t);
         tobi_couple_answer(s, k, t);
+        sph_porous_soften(s, k, n->answer[k]);
     }
     tobi_couple_obey(s, 0);
+    sph_porous_spread_accelerations(s);
+}
+
+void tobi_couple_product(tobi_system *s, double *totals)
+{
+    const tobi_couple_view v = see_entries(s);
+    double t[TOBI_TOTALS];
+    if (!tobi_couple_any(s)) return;
     tobi_launch(&s->sim->exec, kernels_of(s)->couple_product, &v, 0, s->particles.count, t);
     if (!totals) return;
     totals[0] += t[0];
@@ -198,7 +247,8 @@ static void correct_joined(tobi_system *s)
     tobi_constraints *c = &s->sim->constraints;
     const int64_t *first = sph_of(s)->links.first;
     int seen = 0;
-    for (int k = 0; k < c->slots; k++) seen |= first[c->body[k]] != first[c->body[k] + 1];
+    for (int k = 0; k < c->slots; k++)
+        seen |= first[c->body[k]] != first[c->body[k] + 1] || sph_porous_drags(s, c->body[k]);
     if (!seen) return;
     for (int k = 0; k < c->slots; k++) {
         tobi_body *b = &s->sim->bodies[c->body[k]];
@@ -222,7 +272,7 @@ void tobi_couple_correct(tobi_system *s)
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
         double f[6];
-        if (!moves(b) || first[k] == first[k + 1]) continue;
+        if (!moves(b) || (first[k] == first[k + 1] && !sph_porous_drags(s, k))) continue;
         if (tobi_constraints_slot(&s->sim->constraints, k) >= 0) continue;
         collect_forces(s, b, f);
         predict(s, b, f);

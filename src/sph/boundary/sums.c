@@ -113,6 +113,12 @@ void tobi_boundary_known_forces(tobi_system *s, int viscous)
     tobi_boundary_sum(s, TOBI_HOST(sum_reaction, 6, 0), &r, 0);
 }
 
+void tobi_boundary_forces(tobi_system *s, int viscous)
+{
+    const reaction r = {s, viscous, 0};
+    tobi_boundary_sum(s, TOBI_HOST(sum_reaction, 6, 0), &r, 0);
+}
+
 /* totals[0]: W of the same reactions, by changes of shape. */
 static void sum_shape(const void *view, int64_t begin, int64_t end, double *t)
 {
@@ -147,8 +153,7 @@ static void load_shapes(tobi_system *s)
 void tobi_boundary_load(tobi_system *s)
 {
     for (int viscous = 0; viscous < 2; viscous++) {
-        reaction r = {s, viscous, 0};
-        tobi_boundary_sum(s, TOBI_HOST(sum_reaction, 6, 0), &r, 0);
+        tobi_boundary_forces(s, viscous);
         for (int k = 0; k < s->sim->body_count; k++) {
             tobi_body_load *load = &s->sim->bodies[k].load[s->number];
             double *sum = viscous ? load->friction : load->pressure;

@@ -6,6 +6,7 @@
 #include "sph/isph/sweeps.h"
 #include "sph/isph/verbs.h"
 #include "sph/openings.h"
+#include "sph/porous_carry.h"
 #include <math.h>
 
 /* Most sweeps that the method chooses itself. */
@@ -97,6 +98,11 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     return TOBI_OK;
 }
 
+static unsigned list_needs(const tobi_system *s, int full)
+{
+    return sph_needs(s, full) | (sph_porous_carried(s) ? SPH_NEED_CARRIED : 0);
+}
+
 const tobi_method tobi_eisph = {
     .name = "eisph",
     .doc = "Incompressible SPH with an explicit update of the pressure: a few sweeps in place of a solve.",
@@ -104,7 +110,7 @@ const tobi_method tobi_eisph = {
     .params = &tobi_eisph_table,
     .smoothing = choose_smoothing,
     .create = create,
-    .needs = sph_needs,
+    .needs = list_needs,
     .max_dt = choose_dt,
     .begin = begin,
     .rough_forces = 1,

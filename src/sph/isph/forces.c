@@ -4,9 +4,11 @@
    symmetric (decisions 49, 102). Drawback: that flux and the one of the mirrors are the same on average
    only. */
 #include "sph/boundary/boundary.h"
+#include "sph/isph/carry.h"
 #include "sph/isph/forces.h"
 #include "sph/isph/gaps.h"
 #include "sph/isph/shape.h"
+#include "sph/porous_carry.h"
 #include "sph/state.h"
 #include "geom/matrix6.h"
 #include "geom/vec3.h"
@@ -341,13 +343,13 @@ static void find_added_mass(isph_solver *m, tobi_system *s, int k)
     }
 }
 
-/* added_mass_factor = (1 + M^-1 K)^-1. */
-static void find_added_mass_factor(const tobi_rigid *r, isph_body *b)
+/* added_mass_factor = (1 + M^-1 (K + S))^-1, S the drag of zones that the body carries, NULL: none. */
+static void find_added_mass_factor(const tobi_rigid *r, const tobi_porous *zone, isph_body *b)
 {
     double x[6][6];
     for (int j = 0; j < 6; j++) {
         double column[6], moved[6];
-        for (int i = 0; i < 6; i++) column[i] = b->added_mass[i][j];
+        for (int i = 0; i < 6; i++) column[i] = b->added_mass[i][j] + (zone ? zone->answer.drag[i][j] : 0);
         tobi_rigid_answer(r, column, moved);
         for (int i = 0; i < 6; i++) x[i][j] = moved[i] + (i == j);
     }
@@ -373,10 +375,11 @@ static void predict(isph_solver *m, tobi_system *s, int k)
     isph_body *b = &m->body[k];
     double f[6], *answer = sph_of(s)->links.answer[k];
     for (int a = 0; a < 6; a++) f[a] = sph_of(s)->links.total[k][a] + b->rest_force[a];
+    isph_carry_add_known(m, s, k, f);
     tobi_couple_predict(s, k, f);
     if (r->kind == TOBI_PRESCRIBED) return;
     find_added_mass(m, s, k);
-    find_added_mass_factor(r, b);
+    find_added_mass_factor(r, sph_porous_of(s, k), b);
     for (int a = 0; a < 6; a++) {
         const double now = a < 3 ? r->velocity[a] : r->angular_velocity[a - 3];
         f[a] = now + answer[a] - r->before[a];
@@ -410,6 +413,7 @@ static void answer(isph_solver *m, tobi_system *s, const double *pressure)
 {
     sum_body_forces(m, s, pressure);
     for (int k = 0; k < s->sim->body_count; k++) {
+        isph_carry_press(m, s, k, pressure, sph_of(s)->links.total[k]);
         tobi_couple_answer(s, k, sph_of(s)->links.total[k]);
         if (s->sim->bodies[k].rigid.kind != TOBI_PRESCRIBED)
             matrix6_multiply((const double (*)[6])m->body[k].added_mass_factor, sph_of(s)->links.answer[k]);
@@ -425,6 +429,13 @@ static void take_last_pressure(const void *view, int64_t begin, int64_t end, dou
         v->solution[i] = v->held && v->held[i].w != 0 ? 0 : v->pressure[i];
 }
 
+/* Mirrors, and the liquid in zones, move on with the bodies by a share of links.answer. */
+static void move_on(isph_solver *m, tobi_system *s, double share)
+{
+    isph_bodies_accelerate(m, s, share);
+    isph_carry_move(s, share);
+}
+
 /* Mirrors move as the pressure of the last step lets the bodies move. The solve answers the rest, so that the
    couplings spread little of the flux (decision 102). */
 void isph_forces_predict(isph_solver *m, tobi_system *s)
@@ -433,12 +444,12 @@ void isph_forces_predict(isph_solver *m, tobi_system *s)
     tobi_boundary_known_forces(s, 1);
     for (int k = 0; k < s->sim->body_count; k++) predict(m, s, k);
     join(m, s);
-    isph_bodies_accelerate(m, s, 1);
+    move_on(m, s, 1);
     tobi_launch(m->exec, TOBI_HOST(take_last_pressure, 0, 0), &m->view, 0, m->view.count, NULL);
     answer(m, s, m->view.solution);
     for (int k = 0; k < s->sim->body_count; k++)
         memcpy(m->body[k].expected, sph_of(s)->links.answer[k], sizeof m->body->expected);
-    isph_bodies_accelerate(m, s, s->dt);
+    move_on(m, s, s->dt);
     isph_bodies_refresh_images(m);
 }
 
@@ -452,9 +463,9 @@ int isph_forces_overrun(isph_solver *m, tobi_system *s)
     answer(m, s, m->view.solution);
     if (!tobi_motors_overrun(c, s->dt)) return 0;
     for (int k = 0; k < s->sim->body_count; k++) memcpy(now[k], m->body[k].explicit_change, sizeof now[k]);
-    isph_bodies_accelerate(m, s, -1);
+    move_on(m, s, -1);
     for (int k = 0; k < s->sim->body_count; k++) memcpy(now[k], m->body[k].expected, sizeof now[k]);
-    isph_bodies_accelerate(m, s, -s->dt);
+    move_on(m, s, -s->dt);
     return 1;
 }
 
@@ -463,6 +474,7 @@ static void add_spread(isph_solver *m, double *rows)
     isph_view v = m->view;
     v.out = rows;
     tobi_launch(m->exec, m->kernel->isph_add_answer, &v, 0, v.count, NULL);
+    isph_carry_spread(m, m->system, rows);
 }
 
 void isph_forces_add_expected(isph_solver *m)
@@ -507,7 +519,8 @@ double isph_forces_answer_bound(isph_solver *m)
         if (r->kind != TOBI_PRESCRIBED) find_mobility(r, &m->body[k]);
     }
     tobi_boundary_sum(s, TOBI_HOST(trace_answer, 1, 0), m, 1);
-    for (int k = 0; k < s->sim->body_count; k++) most = fmax(most, sph_of(s)->links.total[k][0]);
+    for (int k = 0; k < s->sim->body_count; k++)
+        most = fmax(most, sph_of(s)->links.total[k][0] + isph_carry_trace(m, s, k));
     return most;
 }
 
@@ -519,7 +532,7 @@ void isph_forces_correct(isph_solver *m, tobi_system *s)
     double (*now)[6] = sph_of(s)->links.answer;
     for (int k = 0; k < s->sim->body_count; k++)
         for (int a = 0; a < 6; a++) now[k][a] -= m->body[k].expected[a];
-    isph_bodies_accelerate(m, s, s->dt);
+    move_on(m, s, s->dt);
     isph_bodies_refresh_images(m);
     for (int k = 0; k < s->sim->body_count; k++)
         for (int a = 0; a < 6; a++) now[k][a] += m->body[k].expected[a];

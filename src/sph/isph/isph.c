@@ -7,7 +7,9 @@
 #include "sph/isph/isph.h"
 #include "sph/isph/fields.h"
 #include "sph/isph/forces.h"
+#include "sph/isph/carry.h"
 #include "sph/isph/porous.h"
+#include "sph/porous_carry.h"
 #include "sph/isph/verbs.h"
 #include "sph/kernels.h"
 #include "sph/openings.h"
@@ -72,7 +74,8 @@ static tobi_status create(tobi_system *s, tobi_error *err) { return isph_create_
 static unsigned list_needs(const tobi_system *s, int full)
 {
     const tobi_isph_def *d = s->def;
-    return sph_needs(s, full) | (d->filter > 0 ? SPH_NEED_FILTER : 0);
+    return sph_needs(s, full) | (d->filter > 0 ? SPH_NEED_FILTER : 0) |
+           (sph_porous_carried(s) ? SPH_NEED_CARRIED : 0);
 }
 
 int isph_list_memory(tobi_system *s, double **values)
@@ -339,6 +342,7 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     m->solver.view.porous = sph_fields_of(&s->particles)->porous;
     tobi_linear_report report;
     int again = MOST_AGAIN, iterations = 0;
+    isph_carry_find(&m->solver, s);
     do {
         isph_forces_predict(&m->solver, s);
         sph_soft_predict(s, m->solver.sweeps.count == 0);
@@ -358,7 +362,7 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     isph_porous_compare(&m->solver, s);
     launch(s, m, m->kernel->isph_projection, t);
     m->solver.view.porous = NULL;
-    isph_porous_measure(s);
+    isph_porous_measure(&m->solver, s);
     sph_openings_drive(s);
     s->info.force_sum = t[0]*s->smoothing.volume;
     tobi_stage_end(&s->sim->stages, "pressure force", &clock);

@@ -3,9 +3,11 @@
    docs/theory/porous.md, the drag of each alone, would count too much at the face of a strong zone.
    Drawback: one more pass over the pairs, in runs with zones. */
 #include "sph/isph/porous.h"
+#include "sph/isph/carry.h"
 #include "sph/isph/solve.h"
+#include "sph/porous_carry.h"
 #include "sph/state.h"
-#include <math.h>
+#include <string.h>
 
 typedef enum stage { KEEP, BRAKED, FREE, DONE } stage;
 
@@ -39,6 +41,9 @@ void isph_porous_brake(tobi_system *s)
     gather(s, KEEP);
     sph_porous_brake(s);
     gather(s, BRAKED);
+    if (!sph_porous_carried(s)) return;
+    memset(sph_of(s)->links.answer, 0, (size_t)s->sim->body_count*sizeof *sph_of(s)->links.answer);
+    sph_porous_join(s);              /* with the velocities that bodies have until they are predicted */
 }
 
 void isph_porous_compare(isph_solver *m, tobi_system *s)
@@ -53,25 +58,6 @@ void isph_porous_compare(isph_solver *m, tobi_system *s)
     gather(s, FREE);
 }
 
-/* The zone that takes from a particle: its own, or the nearest, whose particles it has for neighbours. */
-static int find_zone(const tobi_system *s, int64_t i)
-{
-    const int own = (int)sph_fields_of(&s->particles)->porous_before[i].w;
-    const double *x = &s->particles.position[i].x;
-    double least = INFINITY;
-    int found = own - 1;
-    for (int k = 0; k < s->sim->porous_count && own == 0; k++) {
-        const tobi_porous *z = &s->sim->porous[k];
-        double square = 0;
-        for (int a = 0; a < s->box.dimension; a++) {
-            const double off = fmax(fmax(z->lower[a] - x[a], x[a] - z->upper[a]), 0);
-            square += off*off;
-        }
-        if (square < least) least = square, found = k;
-    }
-    return found;
-}
-
 typedef struct share { const tobi_system *s; int zone; } share;
 
 /* totals: force, power, volume. */
@@ -84,7 +70,7 @@ static void measure_range(const void *view, int64_t begin, int64_t end, double *
         const float *before = &f->porous_before[i].x, *taken = &f->porous_taken[i].x,
                     *u = &s->particles.velocity[i].x;
         const int any = taken[0] != 0 || taken[1] != 0 || taken[2] != 0, own = (int)before[3];
-        if (own < 0 || (own == 0 && !any) || find_zone(s, i) != l->zone) continue;
+        if (own < 0 || (own == 0 && !any) || sph_porous_nearest(s, i) != l->zone) continue;
         const double mass = s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
         for (int a = 0; a < s->box.dimension; a++) {
             const double force = mass*taken[a]/s->dt;
@@ -95,9 +81,10 @@ static void measure_range(const void *view, int64_t begin, int64_t end, double *
     }
 }
 
-void isph_porous_measure(tobi_system *s)
+void isph_porous_measure(const isph_solver *m, tobi_system *s)
 {
     if (s->sim->porous_count > 0) gather(s, DONE);
+    isph_carry_settle(m, s);
     for (int k = 0; k < s->sim->porous_count; k++) {
         tobi_porous *z = &s->sim->porous[k];
         const share l = { s, k };
@@ -107,4 +94,5 @@ void isph_porous_measure(tobi_system *s)
         z->power = t[3];
         z->volume = t[4];
     }
+    sph_porous_load(s);
 }

@@ -1,0 +1,73 @@
+/* Porous zones that go along with bodies: from where they started to where they are. Drawback: the pose is
+   that of the begin of a step, in all of it. */
+#include "core/body.h"
+#include "core/porous.h"
+#include "geom/vec3.h"
+#include <math.h>
+#include <string.h>
+
+void tobi_porous_attach(tobi_porous *z, const tobi_body *b)
+{
+    tobi_porous_pose *p = &z->pose;
+    double half[3];
+    for (int a = 0; a < 3; a++) {
+        p->start[a] = 0.5*(z->lower[a] + z->upper[a]);
+        half[a] = 0.5*(z->upper[a] - z->lower[a]);
+        p->arm[a] = p->start[a] - (b->centre[a] - b->lower[a]);
+    }
+    p->reach = vec3_length(half)*(1 + 1e-9);
+    memcpy(p->frame, b->frame, sizeof p->frame);
+    tobi_porous_follow(z, b);
+}
+
+void tobi_porous_turn(const tobi_porous *z, const double start[3], double now[3])
+{
+    for (int a = 0; a < 3; a++) now[a] = vec3_dot(z->pose.turn[a], start);
+}
+
+void tobi_porous_move(const tobi_porous *z, const double start[3], double now[3])
+{
+    double from[3];
+    vec3_sub(from, start, z->pose.start);
+    tobi_porous_turn(z, from, now);
+    vec3_add_scaled(now, now, 1, z->pose.middle);
+}
+
+void tobi_porous_follow(tobi_porous *z, const tobi_body *b)
+{
+    tobi_porous_pose *p = &z->pose;
+    double arm[3];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            p->turn[i][j] = 0;
+            for (int k = 0; k < 3; k++) p->turn[i][j] += b->frame[k][i]*p->frame[k][j];
+        }
+    tobi_porous_turn(z, p->arm, arm);
+    for (int a = 0; a < 3; a++) {
+        p->centre[a] = b->centre[a] - b->lower[a];
+        p->middle[a] = p->centre[a] + arm[a];
+        p->speed[a] = b->rigid.velocity[a];
+        p->speed[3 + a] = b->rigid.angular_velocity[a];
+    }
+    p->away = b->is_absent;
+}
+
+void tobi_porous_arm(const tobi_porous *z, const double x[3], const double size[3], double arm[3])
+{
+    const tobi_porous_pose *p = &z->pose;
+    for (int a = 0; a < 3; a++) {
+        double way = x[a] - p->middle[a];
+        if (size[a] > 0) way -= size[a]*nearbyint(way/size[a]);
+        arm[a] = way + (p->middle[a] - p->centre[a]);
+    }
+}
+
+int tobi_porous_recall(const tobi_porous *z, const double arm[3], double start[3])
+{
+    const tobi_porous_pose *p = &z->pose;
+    double way[3];
+    for (int a = 0; a < 3; a++) way[a] = arm[a] - (p->middle[a] - p->centre[a]);
+    for (int a = 0; a < 3; a++)
+        start[a] = p->start[a] + p->turn[0][a]*way[0] + p->turn[1][a]*way[1] + p->turn[2][a]*way[2];
+    return vec3_dot(way, way) <= p->reach*p->reach;
+}
