@@ -1,7 +1,7 @@
 /* The angle or way of a joint between bodies, and what acts on it: springs, dampers, torques and forces of
    motors at an instant, whose means over a step keep the energy like those of lines; stops; what is told.
    Drawback: stiff springs shorten the time step. */
-#include "core/constraint.h"
+#include "core/joint_known.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <string.h>
@@ -140,17 +140,32 @@ void tobi_constraints_update_springs(tobi_constraints *c, const tobi_body *bodie
     }
 }
 
+void tobi_constraints_add_known(const tobi_constraints *c, const tobi_body *bodies, int body, double load[6])
+{
+    for (int k = 0; k < c->count; k++) {
+        const tobi_constraint *j = &c->at[k];
+        double unit[6];
+        if (!(j->stiffness > 0 || j->damping > 0) || (j->body[0] != body && j->body[1] != body)) continue;
+        find_unit(j, bodies, j->body[0] != body, unit);
+        const double stretch = j->stiffness > 0 ? find_stretch(j, bodies) : 0;
+        const double pull = j->stiffness*stretch + j->damping*tobi_constraint_rate(j, bodies);
+        for (int a = 0; a < 6; a++) load[a] -= pull*unit[a];
+    }
+}
+
+/* Where a liquid has set the drift, by the springs that it began with, the kick takes these alone. */
 void tobi_constraints_add_springs(const tobi_constraints *c, int body, double now, double before,
                                   double damped, double force[3], double torque[3])
 {
     for (int k = 0; k < c->count; k++) {
         const tobi_constraint *j = &c->at[k];
         if (!acts(j) || (j->body[0] != body && j->body[1] != body)) continue;
-        const int side = j->body[0] != body;
+        const int side = j->body[0] != body, known = c->driven && j->stiffness > 0 && before > 0;
+        const double first = known ? now + before : before, last = known ? 0 : now;
         for (int turns = 0; turns < 2; turns++) {
             double *sum = turns ? torque : force;
-            vec3_add_scaled(sum, sum, now, j->load[side] + 3*turns);
-            vec3_add_scaled(sum, sum, before, j->before[side] + 3*turns);
+            vec3_add_scaled(sum, sum, last, j->load[side] + 3*turns);
+            vec3_add_scaled(sum, sum, first, j->before[side] + 3*turns);
             vec3_add_scaled(sum, sum, damped, j->damped[side] + 3*turns);
         }
     }

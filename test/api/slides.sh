@@ -73,6 +73,28 @@ for method in dfsph wcsph isph eisph; do
                  END { exit lost || !(guide > 0.02 && (slide/guide - 1)^2 < 1e-4) }' guide/joints.csv slide/joints.csv
 done
 
+# A stiff spring does not shake bodies in water: its force is known to the pressure. The float is lifted by 31 N.
+cat > stiff.json <<'END2'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1.2, 0.6] }, "spacing": 0.025, "end_time": 0.4,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1.2, 0.3] } } ] } ],
+  "bodies": [ { "name": "float", "box": { "min": [0.45, 0.2], "max": [0.75, 0.4] }, "dynamics": "free", "density": 500 },
+              { "name": "spar", "box": { "min": [0.575, 0.05], "max": [0.625, 0.55] }, "dynamics": "free", "density": 700 } ],
+  "joints": [ { "name": "pto", "kind": "slide", "body": "float", "to_body": "spar", "point": [0.6, 0.3], "axis": [0, 1],
+                "stiffness": 1e6 } ] }
+END2
+for method in dfsph wcsph isph eisph; do
+    "$program" run stiff.json --out stiff --quiet --force --set method=$method > out.txt 2>&1
+    check "$method: a stiff spring holds a float at rest"         awk -F, "$by_name"' v("pto_position [m]")^2 > 1e-6 { bad = 1 }
+                 END { exit lost || bad || NR < 100 }' stiff/joints.csv
+done
+# Likewise one about the axis of a hinge.
+sed 's/"pto", "kind": "slide"/"pto"/; s/, "axis": \[0, 1\]//' stiff.json > elbow.json
+for method in dfsph isph; do
+    "$program" run elbow.json --out elbow --quiet --force --set joints.pto.stiffness=1e5 --set method=$method > out.txt 2>&1
+    check "$method: so does one about a hinge"         awk -F, "$by_name"' v("pto_angle [degrees]")^2 > 0.01 { bad = 1 }
+                 END { exit lost || bad || NR < 100 }' elbow/joints.csv
+done
+
 # Soft solids press a body on a slide.
 cat > soft.json <<'END2'
 { "dimension": 2, "method": "mlsmpm", "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.02, "end_time": 0.8,

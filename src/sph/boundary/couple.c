@@ -2,6 +2,7 @@
    operator, so that a body lighter than the water it displaces is stable. Drawback: contact between bodies
    is known a step late. */
 #include "sph/boundary/boundary.h"
+#include "core/joint_known.h"
 #include "sph/hydrostatic.h"
 #include "sph/kernels.h"
 #include "sph/porous_carry.h"
@@ -49,6 +50,7 @@ static void predict(const tobi_system *s, tobi_body *b, const double known[6])
     double shift[3], turn[3][3], momentum[3], f[6], keep = tobi_rigid_keep(r, s->dt);
     for (int a = 0; a < 6; a++) f[a] = known[a] + r->finer[a];
     tobi_motors_add_guess(&s->sim->constraints, (int)(b - s->sim->bodies), f);
+    tobi_constraints_add_known(&s->sim->constraints, s->sim->bodies, (int)(b - s->sim->bodies), f);
     if (r->joint.kind) {
         predict_joint(s, r, f);
         return;
