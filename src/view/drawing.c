@@ -265,8 +265,10 @@ int tobi_drawing_find_body(const tobi_looks *s, const char *name)
 static void find_color(const tobi_looks *looks, int b, int number, float out[3])
 {
     static const float colors[][3] = { { 0.93f, 0.62f, 0.28f }, { 0.80f, 0.33f, 0.36f },
-                                       { 0.55f, 0.70f, 0.35f }, { 0.62f, 0.50f, 0.74f } };
-    memcpy(out, colors[(b >= 0 ? b : number)%4], sizeof colors[0]);
+                                       { 0.55f, 0.70f, 0.35f }, { 0.62f, 0.50f, 0.74f },
+                                       { 0.90f, 0.82f, 0.35f }, { 0.45f, 0.33f, 0.25f },
+                                       { 0.93f, 0.60f, 0.70f }, { 0.40f, 0.43f, 0.46f } };
+    memcpy(out, colors[(b >= 0 ? b : number)%8], sizeof colors[0]);
     for (int c = 0; b >= 0 && looks->bodies[b].color[0] >= 0 && c < 3; c++)
         out[c] = (float)(looks->bodies[b].color[c]/255);
 }

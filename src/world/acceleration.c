@@ -349,17 +349,22 @@ static int is_finite(const tobi_acceleration *f)
     return isfinite(sum);
 }
 
-/* m/s2: what liquid at rest feels in the middle of the domain. */
+/* m/s2: the most that liquid at rest feels at a corner of the domain. */
 static double felt_size(const tobi_world *w, const tobi_acceleration *f)
 {
-    double x[3] = { 0 }, out[3], sum = 0;
-    for (int a = 0; a < w->sim.def.dimension; a++) x[a] = 0.5*w->system[0].box.size[a];
-    tobi_acceleration_at(f, x, out);
-    for (int a = 0; a < w->sim.def.dimension; a++) {
-        const double felt = w->sim.def.gravity[a] + out[a];
-        sum += felt*felt;
+    double most = 0;
+    for (int corner = 0; corner < 1 << w->sim.def.dimension; corner++) {
+        double x[3] = { 0 }, out[3], sum = 0;
+        for (int a = 0; a < w->sim.def.dimension; a++)
+            x[a] = corner >> a & 1 ? w->system[0].box.size[a] : 0;
+        tobi_acceleration_at(f, x, out);
+        for (int a = 0; a < w->sim.def.dimension; a++) {
+            const double felt = w->sim.def.gravity[a] + out[a];
+            sum += felt*felt;
+        }
+        most = fmax(most, sqrt(sum));
     }
-    return sqrt(sum);
+    return most;
 }
 
 /* Millimetres or degrees that are taken for metres or radians make a frame that no tank bears. */

@@ -131,6 +131,31 @@ static void localize(const tobi_world *w, const double place[3], const double ax
     }
 }
 
+/* at: from the lower corner. A place of the body's own axes, or in other units, is far away. */
+static tobi_status note_place(tobi_world *w, const char *kind, const char *name, const char *key,
+                              const double at[3], tobi_error *err)
+{
+    const tobi_box *box = &w->system[0].box;
+    char text[TOBI_NOTE];
+    int out = 0;
+    for (int a = 0; a < box->dimension; a++) out |= !(at[a] >= 0 && at[a] <= box->size[a]);
+    if (!out) return TOBI_OK;
+    snprintf(text, sizeof text, tr("'%s', (%.4g, %.4g, %.4g) m, lies outside of the domain: it is a place in "
+             "the domain, as the body starts\n"), key, at[0] + box->lower[0], at[1] + box->lower[1],
+             box->dimension == 2 ? 0 : at[2] + box->lower[2]);
+    return tobi_world_add_notes(w, kind, name, text, err);
+}
+
+tobi_status tobi_world_note_hinges(tobi_world *w, tobi_error *err)
+{
+    for (int k = 0; k < w->sim.body_count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        if (b->rigid.joint.kind == TOBI_JOINT_HINGE)
+            TOBI_TRY(note_place(w, "body", b->name, "hinge.point", b->rigid.joint.point, err));
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);
@@ -150,6 +175,9 @@ tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_
     TOBI_TRY(take_hinge(def, w->system[0].box.dimension, &j, err));
     snprintf(j.name, sizeof j.name, "%s", def->name);
     for (int side = 0; side < 2; side++) localize(w, def->point, axis, side, &j);
+    double at[3];
+    vec3_sub(at, def->point, w->system[0].box.lower);
+    TOBI_TRY(note_place(w, "joint", def->name, "point", at, err));
     tobi_constraint *more = realloc(c->at, (size_t)(c->count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a joint");
     c->at = more;

@@ -314,6 +314,7 @@ static tobi_status start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_note_friction(w, err));
     TOBI_TRY(tobi_openings_note(w, err));
     tobi_world_start_porous(w);
+    TOBI_TRY(tobi_world_note_hinges(w, err));
     TOBI_TRY(tobi_world_note_porous(w, err));
     TOBI_TRY(tobi_world_note_scalars(w, err));
     TOBI_TRY(tobi_openings_note_pools(w, err));

@@ -143,6 +143,8 @@ tobi_status tobi_world_note_clamps(tobi_world *w, tobi_error *err);
 tobi_status tobi_world_note_friction(tobi_world *w, tobi_error *err);
 /* Adds a note for each solid that is a liquid, which the SPH methods compute better. */
 tobi_status tobi_world_note_liquids(tobi_world *w, tobi_error *err);
+/* A note for each hinge of a body outside of the domain. */
+tobi_status tobi_world_note_hinges(tobi_world *w, tobi_error *err);
 /* Adds a note for each body that sets off at once in a liquid at rest and each fill of liquid that begins
    beside a wall. */
 tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err);

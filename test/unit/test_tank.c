@@ -71,6 +71,23 @@ static void frames_that_no_tank_bears_are_noted(void **state)
     assert_int_equal(is_noted(0.03, "frame presses"), 0);
 }
 
+/* A turn at 100 degrees/s that begins at once: none of it in the middle, where the axis is. */
+static void a_turn_at_once_is_noted(void **state)
+{
+    (void)state;
+    tobi_world *w = make_tank("dfsph", 2);
+    tobi_motion *turn;
+    int found = 0;
+    OK(tobi_motion_rotation((double[3]){ 0.05, 0.05, 0 }, (double[3]){ 0, 0, 1 }, 100, &turn, &err));
+    OK(tobi_world_set_frame(w, tobi_motion_positions, turn, &err));
+    OK(tobi_world_start(w, &err));
+    for (int k = 0; tobi_world_note(w, k); k++)
+        found += strstr(tobi_world_note(w, k), "and let it begin and end at rest") != NULL;
+    assert_int_equal(found, 1);
+    tobi_world_destroy(w);
+    tobi_motion_free(turn);
+}
+
 static void bad_gravity_is_refused(void **state)
 {
     tobi_world *w = make_tank("dfsph", 2);
@@ -415,6 +432,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_that_no_tank_bears_are_noted),
+        cmocka_unit_test(a_turn_at_once_is_noted),
         cmocka_unit_test(bad_gravity_is_refused),
         cmocka_unit_test(gravity_follows_table_and_swing),
         cmocka_unit_test(central_force_points_to_a_place),

@@ -211,6 +211,24 @@ static int count_of_barge(const char *keys, const char *text)
     return count_in_scene(scene, text);
 }
 
+/* A hinge by the body's own axes, or in millimetres. */
+static void hinges_outside_are_told(void **state)
+{
+    (void)state;
+    static const char *const keys[] = {
+        "\"hinge\": { \"point\": [%s] }",
+        "\"restitution\": 0 } ], \"joints\": [ { \"name\": \"pin\", \"body\": \"barge\", \"point\": [%s]" };
+    static const char *const told[] = { "body 'barge': 'hinge.point', (500, 0.4, 0) m, lies outside",
+                                        "joint 'pin': 'point', (500, 0.4, 0) m, lies outside" };
+    for (int k = 0; k < 2; k++) {
+        char given[200];
+        snprintf(given, sizeof given, keys[k], "500, 0.4");
+        assert_int_equal(count_of_barge(given, told[k]), 1);
+        snprintf(given, sizeof given, keys[k], "0.5, 0.8");
+        assert_int_equal(count_of_barge(given, "outside of the domain"), 0);
+    }
+}
+
 static void ships_that_cannot_be_are_told(void **state)
 {
     (void)state;
@@ -279,6 +297,7 @@ int main(void)
         cmocka_unit_test(an_inlet_in_a_pool_is_told),
         cmocka_unit_test(tension_by_isph_is_told),
         cmocka_unit_test(a_reservoir_without_liquid_is_told),
+        cmocka_unit_test(hinges_outside_are_told),
         cmocka_unit_test(ships_that_cannot_be_are_told),
         cmocka_unit_test(friction_without_a_partner_is_told),
         cmocka_unit_test(a_sudden_wave_maker_is_told),

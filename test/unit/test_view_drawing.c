@@ -285,6 +285,36 @@ static void bodies_are_found_by_name(void **state)
     moment.tracks = NULL, moment.track_count = 0;
 }
 
+/* Those of a scene of eight bodies can be told apart. */
+static void bodies_have_colors_of_their_own(void **state)
+{
+    (void)state;
+    enum { BODIES = 8 };
+    const tobi_view_def view = plain_view();
+    char names[BODIES][8];
+    tobi_body_look each[BODIES];
+    tobi_moment_surface surfaces[BODIES];
+    tobi_looks own = looks;
+    tobi_moment m = moment;
+    tobi_drawing *d;
+    tobi_error err = { 0 };
+    for (int k = 0; k < BODIES; k++) {
+        snprintf(names[k], sizeof names[k], "b%d", k);
+        each[k] = (tobi_body_look){ .color = { -1, -1, -1 }, .opacity = 1, .visible = 1 };
+        snprintf(each[k].name, sizeof each[k].name, "%s", names[k]);
+        snprintf(each[k].body, sizeof each[k].body, "%s", names[k]);
+        surfaces[k] = (tobi_moment_surface){ names[k], 3, 1, corner, side };
+    }
+    own.bodies = each, own.body_count = m.surface_count = BODIES, m.surfaces = surfaces;
+    assert_int_equal(tobi_drawing_make(&own, &m, &view, &d, &err), TOBI_OK);
+    const tobi_picture *p = tobi_drawing_picture(d);
+    assert_int_equal(p->mesh_count, BODIES);
+    for (int k = 0; k < BODIES; k++)
+        for (int n = 0; n < k; n++)
+            assert_memory_not_equal(p->meshes[k].color, p->meshes[n].color, sizeof p->meshes[k].color);
+    tobi_drawing_free(d);
+}
+
 /* A table of two bodies; rows after the moment's time, and broken ones, do not count. */
 static void tracks_are_read(void **state)
 {
@@ -435,6 +465,7 @@ int main(void)
         cmocka_unit_test(numbers_have_their_digits), cmocka_unit_test(numbers_at_axes_are_whole),
         cmocka_unit_test(solids_beside_liquids_have_colors), cmocka_unit_test(bodies_are_found_by_name),
         cmocka_unit_test(fields_of_one_kind), cmocka_unit_test(isolines_of_one_kind),
+        cmocka_unit_test(bodies_have_colors_of_their_own),
         cmocka_unit_test(tracks_are_read), cmocka_unit_test(vorticity_has_a_sign_in_the_plane),
         cmocka_unit_test(a_component_has_its_sign), cmocka_unit_test(names_of_components),
         cmocka_unit_test(faces_of_pale_solids_stay_pale), cmocka_unit_test(wrong_calls_are_refused)
