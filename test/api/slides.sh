@@ -95,6 +95,21 @@ for method in dfsph isph; do
                  END { exit lost || bad || NR < 100 }' elbow/joints.csv
 done
 
+# What a damper takes in water is the integral of c v^2 over the motion, of a slide and of a hinge.
+sed 's/"density": 500/"density": 300/; s/"stiffness": 1e6/"damping": 300/' stiff.json > damp.json
+sed 's/"density": 500/"density": 300, "translation": [0.15, 0]/; s/"stiffness": 1e6/"damping": 20/' elbow.json > bend.json
+for method in dfsph wcsph isph eisph; do
+    for scene in damp bend; do
+        "$program" run $scene.json --out damped --quiet --force --set method=$method > out.txt 2>&1
+        check "$method, $scene: the work of a damper is that of the motion" \
+            awk -F, "$by_name"' { t = v("time [s]"); w = v("pto_work [J per m]"); dt = t - before; before = t
+                     if ("pto_angle [degrees]" in at) { x = v("pto_angle [degrees]")*3.14159265/180; c = 20 }
+                     else { x = v("pto_position [m]"); c = 300 }
+                     if (dt < t) sum += c*(x - last)^2/dt; last = x }
+                     END { exit lost || !(sum > 0.1 && (w/sum - 1)^2 < 4e-4) }' damped/joints.csv
+    done
+done
+
 # Soft solids press a body on a slide.
 cat > soft.json <<'END2'
 { "dimension": 2, "method": "mlsmpm", "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.02, "end_time": 0.8,
