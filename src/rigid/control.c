@@ -45,11 +45,12 @@ static tobi_status set_motors(const tobi_body *b, const tobi_control_input *in,
                               const tobi_control_output *out, tobi_motor *const *motors, tobi_error *err)
 {
     for (int k = 0; k < in->joint_count; k++) {
+        const int own = strcmp(in->joints[k].name, b->name) == 0;        /* the others are between bodies */
         if (out->motor[k] == TOBI_NOT_GIVEN) continue;
         if (!motors[k] || motors[k]->kind == TOBI_MOTOR_NONE)
             return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program tells the motor of '%s', "
                              "which has none; a %s has one by the key motor", b->name, in->joints[k].name,
-                             in->joints[k].slides ? "guide" : "hinge");
+                             !in->joints[k].slides ? "hinge" : own ? "guide" : "slide");
         if (!(fabs(out->motor[k]) <= 1e8))
             return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program tells the motor of '%s' %g; "
                              "allowed is -1e8 to 1e8", b->name, in->joints[k].name, out->motor[k]);
