@@ -247,10 +247,23 @@ static int stays_down(const report *r, int b)
     return high - low < r->spacing;
 }
 
-/* Whether a piston or a wall ends the liquid there, along axis a. */
+/* Whether liquid comes in or goes out there, along axis a. */
+static int is_opening(const report *r, int a, double at)
+{
+    static const char *const lists[] = { "inlets", "outlets" };
+    const json_t *one;
+    for (int l = 0; l < 2; l++)
+        for (size_t k = 0; (one = json_array_get(report_value(r, lists[l]), k)); k++)
+            if (fabs(corner(one, "centre", (size_t)a) - at) < 2*r->spacing &&
+                fabs(corner(one, "normal", (size_t)a)) > 0) return 1;
+    return 0;
+}
+
+/* Whether a piston, a wall or an opening ends the liquid there, along axis a. */
 static int is_closed(const report *r, int a, double at)
 {
     widths w;
+    if (is_opening(r, a, at)) return 1;
     for (int b = 0; r->world && b < tobi_world_body_count(r->world); b++)
         if (measure_widths(r->world, b, r->dimension, &w) == 0 && fills_section(r, &w) && stays_down(r, b) &&
             (fabs(w.low[a] - at) < 2*r->spacing || fabs(w.high[a] - at) < 2*r->spacing)) return 1;
@@ -295,6 +308,14 @@ static int is_sheared(const report *r)
     return rubs && open;
 }
 
+static int falls(const report *r)
+{
+    double sum = 0;
+    for (size_t a = 0; a < (size_t)r->dimension; a++)
+        sum += fabs(json_number_value(json_array_get(report_value(r, "gravity"), a)));
+    return sum > 0;
+}
+
 static void warn_of_liquids(const report *r)
 {
     const json_t *support = report_value(r, "dfsph.support");
@@ -316,7 +337,7 @@ static void warn_of_liquids(const report *r)
         say(r, LOOK, tr("fill"),
             tr("A fill begins beside a wall, not at it: the water stays 3 to 4 %% too high "
                "there. Begin each fill at the wall."));
-    if (g.stands_free)
+    if (g.stands_free && falls(r))
         say(r, LOOK, tr("fronts"),
             tr("Water stands beside free floor: its front runs ahead of experiments, as "
                "potential flow does."));

@@ -128,6 +128,16 @@ sed -i '/^[0-9.]*,paddle/{$!s/,paddle,[^,]*,[^,]*/,paddle,0.4,0.5/}' flume/bodie
 PATH=/nonexistent "$program" report flume --force > out.txt 2> err.txt
 check "one that is drawn up does" says flume/report.html "Water stands beside free floor"
 
+cat > pipe.json <<'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [2, 0.4] }, "spacing": 0.05, "end_time": 0.02, "method": "isph",
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0.4, 0], "max": [1.6, 0.4] }, "velocity": [1, 0] } ] } ],
+  "inlets": [ { "name": "in", "centre": [0.4, 0.2], "normal": [1, 0], "width": 0.4, "speed": 1 } ],
+  "outlets": [ { "name": "out", "centre": [1.6, 0.2], "normal": [1, 0], "width": 0.4 } ], "output": { "interval": 0.01 } }
+END
+expect 0 "" run pipe.json --out pipe --quiet
+PATH=/nonexistent "$program" report pipe > out.txt 2> err.txt
+check "nor do an inlet and an outlet" test "$(grep -c 'beside free floor' pipe/report.html)" = 0
+
 # --- without other programs -------------------------------------------------------------------------
 expect 2 "which DIR?" report
 expect 2 "--out is empty" report x --out=
