@@ -29,6 +29,8 @@ typedef struct tobi_body_look {
     double color[3], opacity;          /* RGB, 0 to 255; -1 = by its number                           */
     double rest[3];                    /* m, mean of its vertices at rest                             */
     double middle[3];                  /* m, of the box around it when these looks were taken         */
+    int64_t anchor[3];                 /* vertices of its surface far apart; those of a body that carries */
+    double anchor_start[3][3];         /* m, where they start                                         */
     int    visible, hollow, is_line;
     tobi_image *image;                 /* owned; NULL = none                                          */
     float  (*uv)[3][2];                /* owned: of the corners of the triangles of its surface       */
@@ -45,6 +47,12 @@ typedef struct tobi_inlet_look {
     int    flow_count;
 } tobi_inlet_look;
 
+/* An edge of a porous zone that a body carries. */
+typedef struct tobi_zone_edge {
+    double end[2][3];                  /* m, at the start                                             */
+    int    body;                       /* of the looks                                                */
+} tobi_zone_edge;
+
 /* What of a world pictures need and does not change. Lists owned: tobi_looks_free. */
 typedef struct tobi_looks {
     int    dimension, threads;
@@ -60,6 +68,8 @@ typedef struct tobi_looks {
     int    zone_count;
     double (*edges)[2][3];             /* m, ends of the edges of those by an outline, likewise       */
     int64_t edge_count;
+    tobi_zone_edge *carried;           /* edges of those that bodies carry                             */
+    int64_t carried_count;
 } tobi_looks;
 
 /* world: need not have begun. */

@@ -4,19 +4,30 @@
 #include "core/porous.h"
 #include "geom/vec3.h"
 #include <math.h>
-#include <string.h>
+
+/* Of a body that moves by forces by its state alone, which a restart knows to the last bit. */
+static void find_pose(const tobi_body *b, double centre[3], double frame[3][3])
+{
+    double m[3][3];
+    const int moves = b->rigid.kind != TOBI_PRESCRIBED;
+    tobi_quaternion_matrix(b->rigid.orientation, m);
+    for (int a = 0; a < 3; a++) {
+        centre[a] = moves ? b->rigid.position[a] : b->centre[a] - b->lower[a];
+        for (int k = 0; k < 3; k++) frame[k][a] = moves ? m[a][k] : b->frame[k][a];
+    }
+}
 
 void tobi_porous_attach(tobi_porous *z, const tobi_body *b)
 {
     tobi_porous_pose *p = &z->pose;
-    double half[3];
+    double half[3], centre[3];
+    find_pose(b, centre, p->frame);
     for (int a = 0; a < 3; a++) {
         p->start[a] = 0.5*(z->lower[a] + z->upper[a]);
         half[a] = 0.5*(z->upper[a] - z->lower[a]);
-        p->arm[a] = p->start[a] - (b->centre[a] - b->lower[a]);
+        p->arm[a] = p->start[a] - centre[a];
     }
     p->reach = vec3_length(half)*(1 + 1e-9);
-    memcpy(p->frame, b->frame, sizeof p->frame);
     tobi_porous_follow(z, b);
 }
 
@@ -36,15 +47,15 @@ void tobi_porous_move(const tobi_porous *z, const double start[3], double now[3]
 void tobi_porous_follow(tobi_porous *z, const tobi_body *b)
 {
     tobi_porous_pose *p = &z->pose;
-    double arm[3];
+    double arm[3], frame[3][3];
+    find_pose(b, p->centre, frame);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             p->turn[i][j] = 0;
-            for (int k = 0; k < 3; k++) p->turn[i][j] += b->frame[k][i]*p->frame[k][j];
+            for (int k = 0; k < 3; k++) p->turn[i][j] += frame[k][i]*p->frame[k][j];
         }
     tobi_porous_turn(z, p->arm, arm);
     for (int a = 0; a < 3; a++) {
-        p->centre[a] = b->centre[a] - b->lower[a];
         p->middle[a] = p->centre[a] + arm[a];
         p->speed[a] = b->rigid.velocity[a];
         p->speed[3 + a] = b->rigid.angular_velocity[a];

@@ -1,5 +1,6 @@
 /* What of a world pictures need: colours and names of its materials, bodies and lines. Drawback: lists are
    copied, so that they outlive their world. */
+#include "geom/vec3.h"
 #include "mpm/particle_fields.h"
 #include "record/record.h"
 #include "world/fit.h"
@@ -141,6 +142,57 @@ static void add_edge(tobi_looks *looks, const double a[3], const double b[3])
         for (int n = 0; n < 3; n++) edge[end][n] = a[n] + part[end]*(b[n] - a[n]);
 }
 
+/* Three vertices of the surface, far apart, and where they start. */
+static void find_anchors(const tobi_body *b, const tobi_porous *z, int dimension, tobi_body_look *look)
+{
+    const double (*rest)[3] = (const double (*)[3])b->mesh.vertices;
+    double far[2] = { 0, 0 };
+    for (int round = 0; round < 2; round++)
+        for (int64_t i = 0; i < b->mesh.vertex_count; i++) {
+            double way[3], along[3], across[3];
+            vec3_sub(way, rest[i], rest[0]);
+            vec3_sub(along, rest[look->anchor[1]], rest[0]);
+            if (dimension == 2) way[2] = along[2] = 0;
+            vec3_cross(across, along, way);
+            const double size = round == 0 ? vec3_dot(way, way) : vec3_dot(across, across);
+            if (size > far[round]) far[round] = size, look->anchor[1 + round] = i;
+        }
+    for (int k = 0; k < 3; k++) {
+        double arm[3];
+        vec3_sub(arm, rest[look->anchor[k]], b->rest.centre);
+        for (int a = 0; a < 3; a++) {
+            look->anchor_start[k][a] = b->lower[a] + z->pose.start[a] - z->pose.arm[a];
+            for (int n = 0; n < 3; n++) look->anchor_start[k][a] += arm[n]*z->pose.frame[n][a];
+        }
+    }
+}
+
+static void add_zone_edge(const tobi_porous *z, tobi_looks *looks, const double a[3], const double b[3])
+{
+    if (!z->carrier) {
+        add_edge(looks, a, b);
+        return;
+    }
+    tobi_zone_edge *e = &looks->carried[looks->carried_count++];
+    memcpy(e->end[0], a, sizeof e->end[0]);
+    memcpy(e->end[1], b, sizeof e->end[1]);
+    e->body = z->carrier - 1;
+}
+
+/* A box that a body carries, which may be turned. */
+static void add_box(const tobi_porous *z, const double from[3], tobi_looks *looks)
+{
+    for (int k = 0; k < 1 << looks->dimension; k++)
+        for (int a = 0; a < looks->dimension; a++) {
+            double at[2][3] = { { 0 } };
+            if (k >> a & 1) continue;
+            for (int n = 0; n < 2; n++)
+                for (int c = 0; c < looks->dimension; c++)
+                    at[n][c] = from[c] + ((k | n << a) >> c & 1 ? z->upper : z->lower)[c];
+            add_zone_edge(z, looks, at[0], at[1]);
+        }
+}
+
 /* Its outline, in 3-D at both ends with the edges between them. */
 static void add_prism(const tobi_porous *z, const double from[3], tobi_looks *looks)
 {
@@ -155,10 +207,10 @@ static void add_prism(const tobi_porous *z, const double from[3], tobi_looks *lo
                 if (looks->dimension == 3)
                     at[end][n][z->axis] = from[z->axis] + (end ? z->upper : z->lower)[z->axis];
             }
-        add_edge(looks, at[0][0], at[0][1]);
+        add_zone_edge(z, looks, at[0][0], at[0][1]);
         if (looks->dimension == 2) continue;
-        add_edge(looks, at[1][0], at[1][1]);
-        if (turn%(TOBI_POROUS_FACETS/4) == 0) add_edge(looks, at[0][0], at[1][0]);
+        add_zone_edge(z, looks, at[1][0], at[1][1]);
+        if (turn%(TOBI_POROUS_FACETS/4) == 0) add_zone_edge(z, looks, at[0][0], at[1][0]);
     }
 }
 
@@ -169,15 +221,21 @@ static tobi_status add_zones(const tobi_world *w, tobi_looks *looks, tobi_error 
     for (int k = 0; k < w->sim.porous_count; k++) corners += w->sim.porous[k].corner_count;
     looks->zones = calloc((size_t)w->sim.porous_count + 1, sizeof *looks->zones);
     looks->edges = calloc((size_t)(3*corners) + 1, sizeof *looks->edges);
-    if (!looks->zones || !looks->edges) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    looks->carried = calloc((size_t)(3*corners) + 12*(size_t)w->sim.porous_count + 1, sizeof *looks->carried);
+    if (!looks->zones || !looks->edges || !looks->carried)
+        return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     for (int k = 0; k < w->sim.porous_count; k++) {
         const tobi_porous *z = &w->sim.porous[k];
+        const int box = !z->corners && !z->carrier;
+        if (z->carrier)
+            find_anchors(&w->sim.bodies[z->carrier - 1], z, looks->dimension, &looks->bodies[z->carrier - 1]);
         if (z->corners) add_prism(z, from, looks);
-        for (int a = 0; a < looks->dimension && !z->corners; a++) {
+        else if (z->carrier) add_box(z, from, looks);
+        for (int a = 0; a < looks->dimension && box; a++) {
             looks->zones[looks->zone_count][0][a] = fmax(from[a] + z->lower[a], looks->box_min[a]);
             looks->zones[looks->zone_count][1][a] = fmin(from[a] + z->upper[a], looks->box_max[a]);
         }
-        looks->zone_count += !z->corners;
+        looks->zone_count += box;
     }
     return TOBI_OK;
 }

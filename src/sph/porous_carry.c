@@ -94,11 +94,12 @@ static void add_load(const double arm[3], double mass, const double x[3], double
 
 /* --- sums over the zones of a body --------------------------------------------------------------- */
 
-/* What of the liquid counts: what it has lost, a column of S, or its accelerations by pressure. */
+/* What of the liquid counts: what the brake has taken, what it has lost in all, a column of S, or its
+   accelerations by pressure. */
 typedef struct counting {
     const tobi_system *s;
     int carrier;
-    enum { LOST, COLUMN, PRESSED } what;
+    enum { BRAKED, LOST, COLUMN, PRESSED } what;
     double column[6];
 } counting;
 
@@ -112,7 +113,7 @@ static void count_range(const void *view, int64_t begin, int64_t end, double *to
         double arm[3], x[3], lost[3];
         if (!z || z->carrier != c->carrier) continue;
         sph_porous_arm(s, z, i, arm);
-        if (c->what == LOST)
+        if (c->what == LOST || c->what == BRAKED)
             for (int a = 0; a < 3; a++) lost[a] = (&f->porous_taken[i].x)[a];
         else if (c->what == COLUMN) {
             sph_porous_carry(c->column, arm, x);
@@ -144,7 +145,7 @@ void sph_porous_know(tobi_system *s)
         if (!n->leads) continue;
         memset(n->drag, 0, sizeof n->drag);
         if (s->sim->bodies[z->carrier - 1].rigid.kind == TOBI_PRESCRIBED) continue;
-        count(s, (counting){ s, z->carrier, LOST, { 0 } }, n->known);
+        count(s, (counting){ s, z->carrier, BRAKED, { 0 } }, n->known);
         for (int j = 0; j < 6; j++) {
             counting c = { s, z->carrier, COLUMN, { 0 } };
             double column[6];

@@ -27,6 +27,7 @@ void tobi_drawing_free(tobi_drawing *d)
     free(d->skins);
     free(d->skin);
     free(d->rest);
+    free(d->edges);
     free(d);
 }
 
@@ -50,6 +51,7 @@ void tobi_looks_free(tobi_looks *looks)
     free(looks->inlets);
     free(looks->zones);
     free(looks->edges);
+    free(looks->carried);
     *looks = (tobi_looks){ 0 };
 }
 
@@ -442,6 +444,7 @@ static tobi_status make(tobi_drawing *d, tobi_error *err)
     TOBI_TRY(take_particles(d, err));
     set_picture(d);
     take_bodies(d);
+    TOBI_TRY(view_take_zones(d, err));
     TOBI_TRY(take_paths(d, err));
     set_view(d);
     return TOBI_OK;

@@ -27,6 +27,7 @@ struct tobi_drawing {
     tobi_picture_skin *skins;          /* of materials with a texture                   */
     int16_t *skin;                     /* of particles, or NULL                         */
     double (*rest)[3];
+    double (*edges)[2][3];             /* of porous zones, with those that bodies carry, or NULL */
 };
 
 /* The colours of all materials, if any has one or if there are several liquids. */
@@ -35,6 +36,9 @@ tobi_status tobi_drawing_make_palette(tobi_drawing *d, const tobi_moment_field *
 int tobi_drawing_color(const tobi_drawing *d, int material, int part, int piece);
 /* A body or line by the name of its surface, or -1. */
 int tobi_drawing_find_body(const tobi_looks *s, const char *name);
+
+/* Edges of porous zones where bodies have them at the moment. zones.c */
+tobi_status view_take_zones(tobi_drawing *d, tobi_error *err);
 
 /* Spacings: how far from the place where it is shown a liquid is kept, for its surface there. */
 #define VIEW_NEST_MARGIN 6.0

@@ -117,6 +117,7 @@ static tobi_status find_carrier(const tobi_world *w, const tobi_porous_def *def,
     z->carrier = body + 1;
     z->answer.leads = 1;
     for (int k = 0; k < w->sim.porous_count; k++) z->answer.leads &= w->sim.porous[k].carrier != z->carrier;
+    tobi_porous_attach(z, &w->sim.bodies[body]);         /* pictures need no start */
     return TOBI_OK;
 }
 

@@ -61,6 +61,33 @@ expect 0 "" check channel.json
 check "check tells what resists" grep -q "porous zone      kelp: 0 1/s, 2 1/m across (0, 1, 0)" out.txt
 check "and what a zone of stones is not" grep -q "has stones of a porosity of 0.5" out.txt
 
+# A float and a paddle carry zones: the same bits after a resume.
+cat > carried.json <<'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1.2, 0.6] }, "gravity": [0, -9.81], "spacing": 0.03, "end_time": 0.3,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1.2, 0.4] } } ] } ],
+  "bodies": [ { "name": "float", "box": { "min": [0.3, 0.34], "max": [0.5, 0.46] }, "dynamics": "free", "density": 300,
+                "velocity": [0.3, 0] },
+              { "name": "axle", "sphere": { "centre": [0.9, 0.2], "radius": 0.06 },
+                "motion": { "rotation": { "centre": [0.9, 0.2], "rate": 200 } } } ],
+  "porous_zones": [ { "name": "net", "body": "float", "box": { "min": [0.3, 0.1], "max": [0.5, 0.34] },
+                      "resistance": { "linear": 100, "quadratic": 50 } },
+                    { "name": "mesh", "body": "axle", "box": { "min": [0.98, 0.14], "max": [1.1, 0.26] }, "screen": { "loss": 5 } } ],
+  "output": { "interval": 0.05, "probe_interval": 0.01, "frames": true } }
+END
+for method in isph dfsph wcsph eisph; do
+    expect 0 "" run carried.json --out carried_$method --quiet --set method=$method --threads 1
+    expect 0 "" run carried.json --out carried_parts_$method --quiet --set method=$method --threads 1 --until 0.15
+    expect 0 "" resume carried_parts_$method --quiet --threads 2 --until 0.3
+    for table in porous_zones bodies history; do
+        check "$method: the same $table.csv after a resume" cmp carried_$method/$table.csv carried_parts_$method/$table.csv
+    done
+    last=$(ls carried_$method/frames | tail -1)
+    check "$method: and the same picture" cmp carried_$method/frames/$last carried_parts_$method/frames/$last
+done
+expect 0 "" run carried_isph/resolved.json --out carried_again --quiet --threads 1
+check "zones of bodies: resolved.json runs alike" cmp carried_isph/porous_zones.csv carried_again/porous_zones.csv
+expect 1 "porous zone 'net' goes along with 'flote', which is no body" check carried.json --set porous_zones.net.body=flote
+
 # A mound with slopes, its armour from a table.
 printf 'y [cm],x [cm],note\n0,30,toe\n15,45,\n15,55,\n0,70,heel\n0,60,\n10,50,\n0,40,\n' > armour.csv
 cat > mound.json <<'END'

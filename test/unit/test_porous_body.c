@@ -175,6 +175,103 @@ static void light_bodies_go_with_the_water(void **state)
     set_off("wcsph", 3, zones[0], 0, 0, 30);
 }
 
+/* A mesh beside an axle that turns half a turn a second: after a quarter of a turn it is a quarter further,
+   goes to the left, and the water pushes it to the right. */
+static void zones_turn_with_their_body(void **state)
+{
+    (void)state;
+    for (int m = 0; m < METHODS; m++) {
+        char text[2000];
+        tobi_porous_info info;
+        tobi_body_info b;
+        snprintf(text, sizeof text,
+                 "{ \"dimension\": 2, \"method\": \"%s\", \"spacing\": 0.025, \"threads\": 1,"
+                 "  \"end_time\": 10, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"gravity\": [0, 0],"
+                 "  \"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"box\": { \"min\": [0, 0],"
+                 "                \"max\": [1, 1] } } ] } ],"
+                 "  \"bodies\": [ { \"name\": \"axle\","
+                 "    \"sphere\": { \"centre\": [0.5, 0.5], \"radius\": 0.05 },"
+                 "    \"motion\": { \"rotation\": { \"centre\": [0.5, 0.5], \"rate\": 180 } } } ],"
+                 "  \"porous_zones\": [ { \"name\": \"mesh\", \"body\": \"axle\","
+                 "    \"screen\": { \"loss\": 2 },"
+                 "    \"box\": { \"min\": [0.65, 0.45], \"max\": [0.9, 0.55] } } ] }", methods[m]);
+        tobi_world *w = make(text);
+        while (tobi_world_time(w) < 0.5 - 1e-9)
+            OK(tobi_world_step(w, 0.5 - tobi_world_time(w), NULL, &err));
+        tobi_world_porous(w, 0, &info);
+        OK(tobi_world_body(w, 0, &b));
+        assert_true(info.force[0] > 0 && fabs(info.force[1]) < 0.3*info.force[0]);
+        close_to("arm", methods[m], -b.viscous_torque[2]/info.force[0], 0.28, 0.05);
+        close_to("liquid in the zone", methods[m], info.volume, 0.025, 0.1*0.025);
+        end(w);
+    }
+}
+
+/* Two light discs with a hinge between them. One has two zones, the other is set off with a strong one. */
+static tobi_world *make_pair(const char *method, int threads)
+{
+    char text[2500];
+    snprintf(text, sizeof text,
+             "{ \"dimension\": 2, \"method\": \"%s\", \"spacing\": 0.025, \"threads\": %d,"
+             "  \"end_time\": 10,"
+             "  \"domain\": { \"min\": [0, 0], \"max\": [1, 0.5], \"walls\": { \"x\": \"periodic\","
+             "    \"y\": \"periodic\" } }, \"gravity\": [0, 0],"
+             "  \"fluids\": [ { \"name\": \"water\", \"viscosity\": 0, \"fill\": [ { \"box\": {"
+             "    \"min\": [0, 0], \"max\": [1, 0.5] } } ] } ],"
+             "  \"bodies\": ["
+             "    { \"name\": \"a\", \"sphere\": { \"centre\": [0.4, 0.25], \"radius\": 0.05 },"
+             "      \"density\": 100, \"dynamics\": \"free\" },"
+             "    { \"name\": \"b\", \"sphere\": { \"centre\": [0.6, 0.25], \"radius\": 0.05 },"
+             "      \"density\": 100, \"dynamics\": \"free\", \"velocity\": [0, 0.5] } ],"
+             "  \"joints\": [ { \"name\": \"hinge\", \"body\": \"a\", \"to_body\": \"b\","
+             "    \"point\": [0.5, 0.25] } ],"
+             "  \"porous_zones\": ["
+             "    { \"name\": \"up\", \"body\": \"a\","
+             "      \"box\": { \"min\": [0.3, 0.31], \"max\": [0.45, 0.45] },"
+             "      \"resistance\": { \"linear\": 1000 } },"
+             "    { \"name\": \"down\", \"body\": \"a\","
+             "      \"box\": { \"min\": [0.3, 0.05], \"max\": [0.45, 0.19] },"
+             "      \"stems\": { \"number\": 1000, \"diameter\": 0.02 }, \"direction\": [1, 1] },"
+             "    { \"name\": \"right\", \"body\": \"b\", \"box\": { \"min\": [0.6, 0.1],"
+             "        \"max\": [0.75, 0.4] }, \"resistance\": { \"linear\": 1e5 } } ] }", method, threads);
+    return make(text);
+}
+
+static void step_pair(const char *method, int exact, int threads, tobi_body_info seen[2])
+{
+    tobi_world *w = make_pair(method, threads);
+    tobi_joint_info hinge;
+    OK(tobi_world_body(w, 1, &seen[1]));
+    const double start = 0.5*seen[1].mass;
+    for (int n = 0; n < 40; n++) OK(tobi_world_step(w, 0, NULL, &err));
+    for (int k = 0; k < 2; k++) {
+        OK(tobi_world_body(w, k, &seen[k]));
+        assert_true(fabs(seen[k].velocity[1]) < 0.5);
+    }
+    const double bodies = seen[0].mass*seen[0].velocity[1] + seen[1].mass*seen[1].velocity[1];
+    if (exact) close_to("momentum", method, bodies + tobi_world_info(w)->momentum[1], start, 1e-3*start);
+    assert_non_null(tobi_world_joint(w, 0, &hinge));
+    assert_true(hinge.gap < 1e-9);
+    end(w);
+}
+
+/* The joint holds, momentum stays, and threads do not matter. */
+static void joined_bodies_carry_several_zones(void **state)
+{
+    (void)state;
+    for (int m = 0; m < METHODS; m++) {
+        tobi_body_info seen[2][2];
+        memset(seen, 0, sizeof seen);
+        for (int k = 0; k < 2; k++) step_pair(methods[m], m < EXACT, 1 + k, seen[k]);
+        for (int k = 0; k < 2; k++) {
+            assert_memory_equal(seen[0][k].velocity, seen[1][k].velocity, sizeof seen[0][k].velocity);
+            assert_memory_equal(seen[0][k].position, seen[1][k].position, sizeof seen[0][k].position);
+            assert_memory_equal(seen[0][k].viscous_torque, seen[1][k].viscous_torque,
+                                sizeof seen[0][k].viscous_torque);
+        }
+    }
+}
+
 static tobi_status waver(void *user, double t, int64_t n, const double (*rest)[3], double (*out)[3],
                          tobi_error *err)
 {
@@ -218,6 +315,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(towed_screens_pull_by_their_loss),
         cmocka_unit_test(light_bodies_go_with_the_water),
+        cmocka_unit_test(zones_turn_with_their_body),
+        cmocka_unit_test(joined_bodies_carry_several_zones),
         cmocka_unit_test(wrong_carriers_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
