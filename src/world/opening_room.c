@@ -122,13 +122,30 @@ static const char *find_free_outlet(const tobi_simulation *s)
     return NULL;
 }
 
+/* A full pipe that nothing but pressures at its ends drives. */
+static tobi_status note_ends(tobi_world *w, tobi_error *err)
+{
+    const tobi_opening *o = w->sim.openings, *first = NULL;
+    int ends = 0;
+    for (int k = 0; k < w->sim.opening_count; k++) {
+        if (!o[k].outlet) return TOBI_OK;
+        if (o[k].gives && ends++ == 0) first = &o[k];
+    }
+    if (ends < 2) return TOBI_OK;
+    return tobi_world_add_notes(w, "outlet", first->name, tr("drives a full pipe by its pressure: such a "
+                                "flow comes to a stop after a while; an inlet with a speed or a flow_rate "
+                                "keeps it up\n"), err);
+}
+
 tobi_status tobi_openings_note(tobi_world *w, tobi_error *err)
 {
     const tobi_system *s = &w->system[0];
     const char *outlet = find_free_outlet(&w->sim);
     char text[TOBI_NOTE];
-    if (w->sim.opening_count == 0 || (s->method->fills_pipes && !outlet)) return TOBI_OK;
+    if (w->sim.opening_count == 0) return TOBI_OK;
     if ((double)s->particles.count*s->smoothing.volume < FULL*measure_domain(s)) return TOBI_OK;
+    TOBI_TRY(note_ends(w, err));
+    if (s->method->fills_pipes && !outlet) return TOBI_OK;
     if (s->method->fills_pipes)
         snprintf(text, sizeof text, tr("where the pressure falls below 0 a full pipe gets cavities "
                  "(mass_held in history.csv falls); a pressure of the outlet '%s', density x speed^2 of the "

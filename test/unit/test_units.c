@@ -194,6 +194,24 @@ static void a_reservoir_without_liquid_is_told(void **state)
                  "\"centre\": [0.2, 0.05], \"normal\": [-1, 0], \"width\": 0.1, \"pressure\": 100 } ] }",
                  cases[k].gravity, cases[k].speed, cases[k].from);
         assert_int_equal(count_in_scene(text, "'lake': presses by the liquid beyond"), cases[k].told);
+        assert_int_equal(count_in_scene(text, "'lake': drives a full pipe"), 0);
+    }
+}
+
+/* One between two outlets with a pressure; where it is half empty, levels drive it. */
+static void a_pipe_without_an_inlet_is_told(void **state)
+{
+    (void)state;
+    for (int full = 0; full < 2; full++) {
+        char text[700];
+        snprintf(text, sizeof text, "{ \"method\": \"isph\", \"dimension\": 2, \"spacing\": 0.02, "
+                 "\"domain\": { \"min\": [0, 0], \"max\": [1, 0.1] }, \"end_time\": 1, "
+                 "\"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"box\": { \"min\": [0, 0], "
+                 "\"max\": [1, %g] } } ] } ], \"outlets\": [ { \"name\": \"lake\", \"centre\": [0.2, 0.05], "
+                 "\"normal\": [-1, 0], \"width\": 0.1, \"pressure\": 200 }, { \"name\": \"end\", "
+                 "\"centre\": [0.8, 0.05], \"normal\": [1, 0], \"width\": 0.1, \"pressure\": 100 } ] }",
+                 full ? 0.1 : 0.06);
+        assert_int_equal(count_in_scene(text, "'lake': drives a full pipe by its pressure"), full);
     }
 }
 
@@ -297,6 +315,7 @@ int main(void)
         cmocka_unit_test(an_inlet_in_a_pool_is_told),
         cmocka_unit_test(tension_by_isph_is_told),
         cmocka_unit_test(a_reservoir_without_liquid_is_told),
+        cmocka_unit_test(a_pipe_without_an_inlet_is_told),
         cmocka_unit_test(hinges_outside_are_told),
         cmocka_unit_test(ships_that_cannot_be_are_told),
         cmocka_unit_test(friction_without_a_partner_is_told),
