@@ -189,6 +189,8 @@ static double ride(int dimension, double dt, double point)
         const double x = r->position[0] - 2, y = r->position[1] - 2, R = r0*cosh(w*g.time);
         most = fmax(most, fabs(sqrt(x*x + y*y)/R - 1) + fabs(x*sin(w*g.time) - y*cos(w*g.time)));
         most = fmax(most, fabs(rate_of(&g, 0)/(r0*w*sinh(w*g.time)) - 1)*fmin(1, g.time));
+        const double along_turn = r->velocity[1]*cos(w*g.time) - r->velocity[0]*sin(w*g.time);
+        most = fmax(most, fabs(along_turn/(w*R) - 1));
         if (!(g.joints.at[0].info.gap < 1e-12)) fail_msg("a gap of %g m", g.joints.at[0].info.gap);
     }
     rig_close(&g);
