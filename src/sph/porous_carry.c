@@ -18,9 +18,11 @@ int sph_porous_carried(const tobi_system *s)
 
 void sph_porous_arm(const tobi_system *s, const tobi_porous *z, int64_t i, double arm[3])
 {
+    const tobi_double3 at = s->particles.position[i];
+    const double x[3] = { at.x, at.y, at.z };
     double size[3];
     for (int a = 0; a < 3; a++) size[a] = s->box.periodic[a] ? s->box.size[a] : 0;
-    tobi_porous_arm(z, &s->particles.position[i].x, size, arm);
+    tobi_porous_arm(z, x, size, arm);
 }
 
 void sph_porous_carry(const double u[6], const double arm[3], double out[3])
@@ -119,8 +121,9 @@ static void count_range(const void *view, int64_t begin, int64_t end, double *to
             sph_porous_carry(c->column, arm, x);
             sph_porous_drag_by(f->porous[i], x, lost);
         } else {                                     /* N a of M a: c P of it */
+            const float by[3] = { f->accel[i].x, f->accel[i].y, f->accel[i].z };
             float part[3];
-            sph_porous_part(f->porous[i], &f->accel[i].x, part);
+            sph_porous_part(f->porous[i], by, part);
             for (int a = 0; a < 3; a++) lost[a] = part[a];
         }
         add_load(arm, mass_of(s, i), lost, totals);
@@ -321,9 +324,10 @@ static void brake_gain(const void *view, int64_t begin, int64_t end)
     const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t i = begin; i < end; i++) {
         const float *u = &s->particles.velocity[i].x, *kept = &f->porous_kept[i].x;
-        float *a = &f->accel[i].x;
+        float a[3];
         for (int c = 0; c < 3; c++) a[c] = (float)(((double)u[c] - kept[c])/s->dt);
         sph_porous_yield(f->porous[i], a);
+        f->accel[i] = (tobi_float4){ a[0], a[1], a[2], 0 };
     }
 }
 

@@ -265,9 +265,9 @@ static void find_rest(const isph_solver *m, tobi_system *s, int body)
     const tobi_rigid *r = &s->sim->bodies[body].rigid;
     const tobi_porous *z = sph_porous_of(s, body);
     double f[6], fall[6] = { 0 }, *answer = sph_of(s)->links.answer[body], speed[6];
-    for (int a = 0; a < 6; a++)
-        speed[a] = (a < 3 ? r->velocity[a] : r->angular_velocity[a - 3]) + m->body[body].explicit_change[a] +
-                   s->dt*answer[a];
+    memcpy(speed, r->velocity, sizeof r->velocity);
+    memcpy(speed + 3, r->angular_velocity, sizeof r->angular_velocity);
+    for (int a = 0; a < 6; a++) speed[a] += m->body[body].explicit_change[a] + s->dt*answer[a];
     matrix6_multiply((const double (*)[6])z->answer.drag, speed);
     isph_carry_press(m, s, body, m->view.solution, fall);
     const summing u = { { m, s }, body + 1, NULL, { { 0 } }, 0 };
