@@ -35,6 +35,8 @@ typedef struct tobi_scalar_value_def {
     double value;                  /* TOBI_NO_VALUE: flux instead                                      */
     double flux;                   /* amount/(m2 s) into the liquid, of a side or body                 */
     double transfer;               /* amount/(m2 s) per unit between value and liquid; 0: perfect         */
+    double heat_capacity;          /* amount per unit, 2-D: per m, of a side or body; 0: keeps its value  */
+    double power;                  /* amount/s, 2-D: per m, that one with a heat capacity gets            */
 } tobi_scalar_value_def;
 
 /* A scalar of the liquids of a world. */
@@ -48,6 +50,8 @@ typedef struct tobi_scalar_info {
 typedef struct tobi_scalar_flow {
     const char *field, *unit;      /* as in tobi_scalar_info                                           */
     double flow;                   /* amount/s into the liquid, last step, 2-D: per m; 0 after a load      */
+    int    stores;                 /* 1: it has a heat capacity                                        */
+    double value;                  /* of it now; NAN where a flux is given                             */
 } tobi_scalar_flow;
 
 #ifdef __cplusplus

@@ -31,6 +31,8 @@ typedef struct tobi_scalar_place {
     double value;
     tobi_scalar_wall wall;
     double flow;                    /* amount/s of the last step, see tobi_scalar_flow                 */
+    double capacity, power;         /* amount per unit, amount/s; 0: the wall keeps its value          */
+    double stored;                  /* value of a wall with a capacity, from that at the start         */
 } tobi_scalar_place;
 
 /* What it does to gravity: `per_unit` is -expansion times gravity, m/s2. */

@@ -273,4 +273,5 @@
 #define SCALAR_FLOW(V) \
     V("flow", "W", f.flow, \
       "What comes through the side or body into the liquid, in the last step; kg/s of a concentration.") \
-    V("passed", "J", run->works.scalar[k], "Sum of flow times time since the start.")
+    V("passed", "J", run->works.scalar[k], "Sum of flow times time since the start.") \
+    V("value", "degC", f.value, "Of a side or body with a heat capacity alone: the value that it has.")

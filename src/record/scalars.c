@@ -32,6 +32,12 @@ static void add(header *h, const char *wall, const char *field, const tobi_csv_c
                                                                     h->dimension) };
 }
 
+/* Walls that keep their value have no column of it. */
+static int is_there(const tobi_scalar_flow *f, const char *column)
+{
+    return f->stores || strcmp(column, "value") != 0;
+}
+
 static void list_columns(const tobi_world *w, header *h)
 {
     tobi_scalar_info i;
@@ -41,7 +47,8 @@ static void list_columns(const tobi_world *w, header *h)
     for (int k = 0; tobi_world_scalar(w, k, &i); k++)
         for (int v = 0; v < OF_ALL; v++) add(h, "", i.field, &of_all[v], i.unit);
     for (int k = 0; (name = tobi_world_scalar_flow(w, k, &f)); k++)
-        for (int v = 0; v < OF_FLOW; v++) add(h, name, f.field, &of_flow[v], f.unit);
+        for (int v = 0; v < OF_FLOW; v++)
+            if (is_there(&f, of_flow[v].name)) add(h, name, f.field, &of_flow[v], f.unit);
 }
 
 tobi_status tobi_scalars_open(tobi_run *run, bool continued, tobi_error *err)
@@ -74,6 +81,8 @@ tobi_status tobi_scalars_write(tobi_run *run, double before, tobi_error *err)
     tobi_csv_add_real(run->scalars, now);
 #define V(name, unit, value, doc) tobi_csv_add_real(run->scalars, value);
     for (int k = 0; tobi_world_scalar(run->world, k, &i); k++) { SCALAR(V) }
+#undef V
+#define V(name, unit, value, doc) if (is_there(&f, name)) tobi_csv_add_real(run->scalars, value);
     for (int k = 0; tobi_world_scalar_flow(run->world, k, &f); k++) { SCALAR_FLOW(V) }
 #undef V
     return tobi_trouble_pass(run, TOBI_KIND_TABLES, run->outputs, tobi_csv_end_row(run->scalars, err), err);

@@ -104,26 +104,29 @@ static float find_most_eddy(const tobi_system *s)
     return (float)most;
 }
 
-/* A side, `plane` of the view, or a body, and what of it counts. */
+/* A side, `plane` of the view, or a body, and what of it counts. weighs: looks at what it would give. */
 typedef struct giver {
     const tobi_system *s;
     const sph_view *v;
     const tobi_scalar_place *place;
-    int plane;
+    int plane, weighs;
 } giver;
 
-/* What particle i gets of a wall at the distance `at`, whose integral of the kernel is sigma; kg unit/s. */
-static double give(const giver *g, int64_t i, float at, float sigma)
+/* What particle i gets of a wall at the distance `at`, whose integral of the kernel is sigma. t: kg unit/s;
+   or kg/s per unit that the wall is above the particle, and that times the value of the particle. */
+static void give(const giver *g, int64_t i, float at, float sigma, double *t)
 {
     const sph_view *v = g->v;
     const tobi_float4 now = v->scalar_now[i];
     const int k = g->place->field;
-    if (sph_driven(v, i)) return 0;
-    const float rate = sph_scalar_wall_rate(v, &g->place->wall,
-                                            v->scalar.diffusivity[k] + v->scalar.per_eddy[k]*now.z, sigma, at,
-                                            (&now.x)[k], now.w);
-    (&v->scalar_change[i].x)[k] += v->scalar.dt*rate;
-    return g->s->smoothing.volume*now.w*rate;
+    const float diffusivity = v->scalar.diffusivity[k] + v->scalar.per_eddy[k]*now.z;
+    const tobi_scalar_wall unit = { 1, 1, 0, g->place->wall.resistance };
+    if (sph_driven(v, i)) return;
+    const float rate = g->weighs ? sph_scalar_wall_rate(v, &unit, diffusivity, sigma, at, 0, now.w)
+        : sph_scalar_wall_rate(v, &g->place->wall, diffusivity, sigma, at, (&now.x)[k], now.w);
+    t[0] += g->s->smoothing.volume*now.w*rate;
+    if (g->weighs) t[1] += g->s->smoothing.volume*now.w*rate*(double)(&now.x)[k];
+    else (&v->scalar_change[i].x)[k] += v->scalar.dt*rate;
 }
 
 static float keep_off(const sph_view *v, float at) { return at > 0.25f*v->spacing ? at : 0.25f*v->spacing; }
@@ -133,7 +136,7 @@ static void give_from_plane(const void *view, int64_t begin, int64_t end, double
     const giver *g = view;
     for (int64_t i = begin; i < end; i++) {
         const float at = sph_plane_distance(g->v, g->plane, i), s = keep_off(g->v, at);
-        if (at < g->v->h) t[0] += give(g, i, s, sph_plane_value(g->v, g->v->table->sigma, s));
+        if (at < g->v->h) give(g, i, s, sph_plane_value(g->v, g->v->table->sigma, s), t);
     }
 }
 
@@ -144,26 +147,45 @@ static void give_from_body(const void *view, int64_t begin, int64_t end, double 
     for (int64_t k = begin; k < end; k++) {
         const tobi_boundary_link *l = &sph_of(g->s)->links.link[k];
         const double *n = l->gradient, sigma = sqrt(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
-        t[0] += give(g, l->particle, keep_off(g->v, l->distance), (float)sigma);
+        give(g, l->particle, keep_off(g->v, l->distance), (float)sigma, t);
     }
+}
+
+static void launch(const giver *g, tobi_exec *exec, double *t)
+{
+    const int64_t *first = sph_of(g->s)->links.first;
+    const int body = g->place->number;
+    if (g->place->kind == TOBI_SCALAR_AT_SIDE)
+        tobi_launch(exec, TOBI_HOST(give_from_plane, 2, 0), g, 0, g->s->particles.count, t);
+    else tobi_launch(exec, TOBI_HOST(give_from_body, 2, 0), g, first[body], first[body + 1], t);
+}
+
+/* Eq. (3b): a wall with a heat capacity gives by the value that it has at the end of the step. */
+static void find_value(giver *g, tobi_scalar_place *p, tobi_exec *exec, double capacity)
+{
+    double t[TOBI_TOTALS] = { 0 };
+    const double dt = g->s->dt;
+    g->weighs = 1;
+    launch(g, exec, t);
+    g->weighs = 0;
+    p->stored = (p->capacity*p->stored + dt*(p->power + capacity*t[1]))/(p->capacity + dt*capacity*t[0]);
+    p->wall.value = (float)p->stored;
 }
 
 /* One wall after the other: a particle may see several. */
 static void give_from_walls(tobi_system *s, const sph_view *v)
 {
-    const int64_t *first = sph_of(s)->links.first;
     for (int k = 0; k < s->sim->scalar_place_count; k++) {
         tobi_scalar_place *p = &s->sim->scalar_place[k];
-        giver g = { s, v, p, 0 };
+        const double capacity = s->sim->scalar[p->field].capacity;
+        giver g = { s, v, p, 0, 0 };
+        if (p->kind < TOBI_SCALAR_AT_SIDE) continue;
         double t[TOBI_TOTALS] = { 0 };
         while (p->kind == TOBI_SCALAR_AT_SIDE && p->number != 2*v->plane[g.plane].axis +
                                                               (v->plane[g.plane].sign < 0)) g.plane++;
-        if (p->kind == TOBI_SCALAR_AT_SIDE)
-            tobi_launch(&s->sim->exec, TOBI_HOST(give_from_plane, 1, 0), &g, 0, s->particles.count, t);
-        if (p->kind == TOBI_SCALAR_AT_BODY)
-            tobi_launch(&s->sim->exec, TOBI_HOST(give_from_body, 1, 0), &g, first[p->number],
-                        first[p->number + 1], t);
-        p->flow = s->sim->scalar[p->field].capacity*t[0];
+        if (p->capacity > 0) find_value(&g, p, &s->sim->exec, capacity);
+        launch(&g, &s->sim->exec, t);
+        p->flow = capacity*t[0];
     }
 }
 

@@ -7,6 +7,7 @@
 #include "world/load_system.h"
 #include "world/nest.h"
 #include "world/openings.h"
+#include "world/scalars.h"
 #include "world/step.h"
 #include "world/world.h"
 #include "world/motors.h"
@@ -43,6 +44,7 @@ static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
         tobi_openings_get(w, way);
         TOBI_TRY(tobi_store_put(f, "openings", TOBI_F64, s->opening_count, 1, way, err));
     }
+    TOBI_TRY(tobi_scalars_put(w, f, err));
     TOBI_TRY(tobi_nest_put(w, f, err));
     return tobi_world_put_bodies(w, f, err);
 }
@@ -66,7 +68,7 @@ tobi_status tobi_world_save(tobi_world *w, const char *path, tobi_error *err)
 /* A checkpoint as read, before the world takes it over. */
 typedef struct loaded {
     int64_t step;
-    double clock[CLOCK], gravity[3], way[TOBI_OPENING_LIMIT];
+    double clock[CLOCK], gravity[3], way[TOBI_OPENING_LIMIT], stored[TOBI_SCALAR_VALUE_LIMIT];
     tobi_loaded_system system[TOBI_SYSTEM_LIMIT];
     tobi_loaded_bodies bodies;
     uint8_t *seen;
@@ -117,6 +119,7 @@ static tobi_status read_all(tobi_world *w, tobi_store *f, const char *path, load
     TOBI_TRY(check_bodies(w, f, err));
     TOBI_TRY(read_clock(f, path, l, err));
     TOBI_TRY(read_openings(w, f, path, l, err));
+    TOBI_TRY(tobi_scalars_get(w, f, path, l->stored, err));
     TOBI_TRY(tobi_nest_get(w, f, path, &l->seen, &l->seen_ids, err));
     for (int k = 0; k < w->system_count; k++)
         TOBI_TRY(tobi_system_get(&w->system[k], k, f, path, &l->system[k], err));
@@ -134,7 +137,10 @@ static void take_over(tobi_world *w, loaded *l)
         tobi_porous *z = &s->porous[k];
         z->force[0] = z->force[1] = z->force[2] = z->power = z->volume = 0;
     }
-    for (int k = 0; k < s->scalar_place_count; k++) s->scalar_place[k].flow = 0;
+    for (int k = 0; k < s->scalar_place_count; k++) {
+        s->scalar_place[k].flow = 0;
+        s->scalar_place[k].stored = l->stored[k];
+    }
     s->scalar_power = 0;
     tobi_openings_set(w, l->way);
     if (w->sim.nest.outer) tobi_nest_take(w, l->seen, l->seen_ids);

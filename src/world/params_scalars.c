@@ -56,6 +56,12 @@ static const tobi_param value_rows[] = {
     { .key = "transfer", REAL, AT(tobi_scalar_value_def, transfer), RANGE(1e-12, 1e12), .unit = "W/(m2 K)",
       .text = "perfect", .doc = "Heat transfer between the value and the liquid on the side or body: through "
                                 "a wall, or a layer. Perfect: liquid on it has the value." },
+    { .key = "heat_capacity", REAL, AT(tobi_scalar_value_def, heat_capacity), RANGE(1e-12, 1e15),
+      .unit = "J/K", .text = "unlimited",
+      .doc = "Of all of the side or body, in 2-D per metre: its value begins as given and falls as heat "
+             "leaves it. Unlimited: it keeps its value." },
+    { .key = "power", REAL, AT(tobi_scalar_value_def, power), RANGE(-1e12, 1e12), .unit = "W",
+      .doc = "Heat that a side or body with a heat capacity gets, as of a heater; in 2-D per metre." },
     { 0 }
 };
 

@@ -67,6 +67,12 @@ static tobi_status find_kind(const tobi_world *w, const tobi_scalar_value_def *d
     if (d->transfer > 0 && !(given && wall))
         REFUSE("transfer", tr("a transfer of %s goes with the value of a side or body"),
                field_name[d->field]);
+    if (d->heat_capacity > 0 && !(given && wall))
+        REFUSE("heat_capacity", tr("a heat capacity of %s goes with the value of a side or body"),
+               field_name[d->field]);
+    if (d->power != 0 && !(d->heat_capacity > 0))
+        REFUSE("power", tr("a power of %s goes with a heat capacity: else nothing would change by it"),
+               field_name[d->field]);
     if (!w->sim.scalar[d->field].given)
         REFUSE("field", tr("the world has no %s; scalars are to have it"), field_name[d->field]);
     return TOBI_OK;
@@ -165,6 +171,9 @@ tobi_status tobi_world_add_scalar_value(tobi_world *w, const tobi_scalar_value_d
     p.wall.value = p.wall.fixed != 0 ? (float)(def->value - c->value) : 0;
     p.wall.flux = (float)(def->flux/c->capacity);
     p.wall.resistance = def->transfer > 0 ? (float)(c->capacity/def->transfer) : 0;
+    p.capacity = def->heat_capacity;
+    p.power = def->power;
+    p.stored = p.wall.fixed != 0 ? def->value - c->value : 0;
     snprintf(p.name, sizeof p.name, "%s", def->name ? def->name : name);
     TOBI_TRY(check_others(w, &p, err));
     w->sim.scalar_place[w->sim.scalar_place_count++] = p;
@@ -227,7 +236,10 @@ const char *tobi_world_scalar_flow(const tobi_world *w, int number, tobi_scalar_
         const tobi_scalar_place *p = &w->sim.scalar_place[k];
         if (p->kind != TOBI_SCALAR_AT_SIDE && p->kind != TOBI_SCALAR_AT_BODY) continue;
         if (number-- > 0) continue;
-        if (flow) *flow = (tobi_scalar_flow){ field_name[p->field], field_unit[p->field], p->flow };
+        const double value = p->capacity > 0 ? w->sim.scalar[p->field].value + p->stored
+                                             : p->wall.fixed != 0 ? p->value : NAN;
+        if (flow) *flow = (tobi_scalar_flow){ field_name[p->field], field_unit[p->field], p->flow,
+                                              p->capacity > 0, value };
         return p->name;
     }
     return NULL;
@@ -280,6 +292,34 @@ void tobi_scalars_repeat(tobi_system *s, int64_t i, const tobi_system *other, in
 {
     tobi_double2 *at = tobi_scalars_of(&s->particles);
     if (at) at[i] = tobi_scalars_of(&other->particles)[of];
+}
+
+static int any_stores(const tobi_simulation *s)
+{
+    int any = 0;
+    for (int k = 0; k < s->scalar_place_count; k++) any |= s->scalar_place[k].capacity > 0;
+    return any;
+}
+
+tobi_status tobi_scalars_put(const tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    double stored[TOBI_SCALAR_VALUE_LIMIT];
+    if (!any_stores(&w->sim)) return TOBI_OK;
+    for (int k = 0; k < w->sim.scalar_place_count; k++) stored[k] = w->sim.scalar_place[k].stored;
+    return tobi_store_put(f, "scalar_walls", TOBI_F64, w->sim.scalar_place_count, 1, stored, err);
+}
+
+tobi_status tobi_scalars_get(const tobi_world *w, tobi_store *f, const char *path, double *stored,
+                             tobi_error *err)
+{
+    const int n = w->sim.scalar_place_count;
+    for (int k = 0; k < n; k++) stored[k] = w->sim.scalar_place[k].stored;
+    if (!any_stores(&w->sim)) return TOBI_OK;
+    TOBI_TRY(tobi_store_get(f, "scalar_walls", TOBI_F64, n, 1, stored, err));
+    for (int k = 0; k < n; k++)
+        if (!isfinite(stored[k]))
+            return tobi_fail(err, TOBI_DAMAGED, "%s: the temperature of a wall is no number", path);
+    return TOBI_OK;
 }
 
 static void start_range(const void *view, int64_t begin, int64_t end)

@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char *const methods[] = { "dfsph", "isph", "eisph", "wcsph" };
 enum { METHODS = sizeof methods/sizeof *methods };
@@ -246,6 +247,66 @@ static void bodies_conduct(void **state)
     }
 }
 
+static tobi_world *make_wall(const char *method, double transfer, double heat_capacity, double power)
+{
+    tobi_world *w = make_slab(method, 2, LENGTH/20, NULL);
+    tobi_scalar_value_def v = tobi_default_scalar_value_def();
+    add_temperature(w, 20, 0);
+    v.side = TOBI_X_MIN;
+    v.value = 50;
+    v.transfer = transfer;
+    v.heat_capacity = heat_capacity;
+    v.power = power;
+    OK(tobi_world_add_scalar_value(w, &v, &err));
+    return w;
+}
+
+static double wall_of(const tobi_world *w)
+{
+    tobi_scalar_flow f;
+    assert_non_null(tobi_world_scalar_flow(w, 0, &f));
+    assert_true(f.stores);
+    return f.value;
+}
+
+/* Through a poor layer a wall and the liquid, each of one temperature, come together as
+   exp(-h A (1/C + 1/(m c)) t). What the wall loses the liquid gains. */
+static void walls_cool(void **state)
+{
+    (void)state;
+    for (int m = 1; m < METHODS; m += 2) {
+        const double liquid = DENSITY*CAPACITY*LENGTH*HEIGHT, store = 0.5*liquid,
+                     transfer = 0.02*DENSITY*CAPACITY*D/LENGTH, rate = transfer*HEIGHT*(1/store + 1/liquid);
+        tobi_world *w = make_wall(methods[m], transfer, store, 0);
+        advance(w, 0.02/rate);
+        close_to("fall", methods[m], 30 - (wall_of(w) - look(w).mean), 30*(1 - exp(-0.02)), 0.02);
+        close_to("balance", methods[m], look(w).amount, store*(50 - wall_of(w)), 1e-6);
+        tobi_world_destroy(w);
+    }
+}
+
+/* A wall that stores next to nothing gives what it gets, and a run that goes on has the same bits. */
+static void thin_heaters_give_their_power(void **state)
+{
+    const double power = 800, until = 10;
+    char path[] = "/tmp/tobi_heater_XXXXXX";
+    (void)state;
+    close(mkstemp(path));
+    tobi_world *w = make_wall("dfsph", 0, 1e-6, power), *again = make_wall("dfsph", 0, 1e-6, power);
+    advance(w, until);
+    close_to("amount", "dfsph", look(w).amount, power*until + 1e-6*(50 - wall_of(w)), 1e-6);
+    assert_true(wall_of(w) > look(w).most);
+    OK(tobi_world_save(w, path, &err));
+    OK(tobi_world_load(again, path, &err));
+    assert_true(wall_of(again) == wall_of(w));
+    advance(w, until + 1);
+    advance(again, until + 1);
+    assert_true(wall_of(again) == wall_of(w) && look(again).amount == look(w).amount);
+    tobi_world_destroy(again);
+    tobi_world_destroy(w);
+    unlink(path);
+}
+
 /* Along a periodic axis nothing holds the liquid: warm liquid falls more slowly, cold one faster. */
 static void warm_liquid_is_lighter(void **state)
 {
@@ -360,6 +421,9 @@ static void values_are_checked(void **state)
     tobi_scalar_def s = tobi_default_scalar_def();
     (void)state;
     SAYS("no temperature; scalars are to have it", v.side = TOBI_X_MIN; v.value = 1;);
+    SAYS("a heat capacity of temperature goes with", v.fluid = "oil"; v.value = v.heat_capacity = 1;);
+    SAYS("a heat capacity of temperature goes with", v.side = TOBI_X_MIN; v.flux = 1; v.heat_capacity = 1;);
+    SAYS("a power of temperature goes with a heat capacity", v.side = TOBI_X_MIN; v.value = 1; v.power = 1;);
     add_temperature(w, 20, 0);
     REFUSED(tobi_world_add_scalar(w, &s, &err), TOBI_INVALID, "temperature is given already");
     s.thinning = 0.1;
@@ -478,7 +542,8 @@ int main(void)
         cmocka_unit_test(plates_conduct_by_all),      cmocka_unit_test(layers_resist),
         cmocka_unit_test(fluxes_bring_what_they_say), cmocka_unit_test(halves_mix),
         cmocka_unit_test(moving_liquid_takes_a_flux), cmocka_unit_test(extremes_have_any_size),
-        cmocka_unit_test(bodies_conduct),             cmocka_unit_test(warm_liquid_is_lighter),
+        cmocka_unit_test(bodies_conduct),             cmocka_unit_test(walls_cool),
+        cmocka_unit_test(warm_liquid_is_lighter),     cmocka_unit_test(thin_heaters_give_their_power),
         cmocka_unit_test(all_gravity_pulls_less),
         cmocka_unit_test(warm_liquid_is_thinner_by_all),
         cmocka_unit_test(idle_values_are_noted),
