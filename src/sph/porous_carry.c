@@ -214,6 +214,14 @@ void sph_porous_factor(tobi_system *s, int body)
     matrix6_invert(x, z->answer.factor);
 }
 
+static void add_velocity(double answer[6], const tobi_rigid *r, double share)
+{
+    for (int a = 0; a < 3; a++) {
+        answer[a] += share*r->velocity[a];
+        answer[3 + a] += share*r->angular_velocity[a];
+    }
+}
+
 void sph_porous_answer(tobi_system *s, int body)
 {
     const tobi_rigid *r = &s->sim->bodies[body].rigid;
@@ -221,9 +229,9 @@ void sph_porous_answer(tobi_system *s, int body)
     double *answer = sph_of(s)->links.answer[body];
     if (!z) return;
     sph_porous_factor(s, body);
-    for (int a = 0; a < 6; a++) answer[a] += a < 3 ? r->velocity[a] : r->angular_velocity[a - 3];
+    add_velocity(answer, r, 1);
     matrix6_multiply((const double (*)[6])z->answer.factor, answer);
-    for (int a = 0; a < 6; a++) answer[a] -= a < 3 ? r->velocity[a] : r->angular_velocity[a - 3];
+    add_velocity(answer, r, -1);
 }
 
 /* --- what the liquid of the zones gets from them --------------------------------------------------- */

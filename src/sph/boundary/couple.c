@@ -109,8 +109,10 @@ void tobi_couple_obey(tobi_system *s, int moving)
         for (int k = 0; k < c->slots; k++) {
             const tobi_rigid *r = &s->sim->bodies[c->body[k]].rigid;
             double *answer = sph_of(s)->links.answer[c->body[k]];
-            for (int a = 0; a < 6 && moving; a++)
-                now[a] = a < 3 ? r->velocity[a] : r->angular_velocity[a - 3];
+            for (int a = 0; a < 3 && moving; a++) {
+                now[a] = r->velocity[a];
+                now[3 + a] = r->angular_velocity[a];
+            }
             for (int a = 0; a < 6; a++)
                 if (step == 0) c->speed[k][a] = now[a] + answer[a];
                 else answer[a] = c->speed[k][a] - now[a];
