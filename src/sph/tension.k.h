@@ -144,8 +144,9 @@ TOBI_FN void sph_tension_finish(const sph_view *v, int64_t i, sph_tension_acc *a
     (void)totals;
     if (b > 0) p = sigma*v->record[i].w;
     else if (lane_sum(a->weight) > 0) p = sigma*lane_sum(a->sum)/lane_sum(a->weight);
+    v->capillary[i] = p;
+    if (v->jumps) return;
     float k = 2*p*v->dt*v->inverse_density[v->fluid[i]];
     u.x += k*g.x; u.y += k*g.y; u.z += k*g.z;
     v->velocity[i] = u;
-    v->capillary[i] = p;
 }

@@ -59,6 +59,7 @@ typedef struct sph_view {
     sph_viscous_fields viscous;
     tobi_float4 *TOBI_RESTRICT phase, *TOBI_RESTRICT interface;   /* NULL with one fluid, phases.k.h */
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
+    int jumps;                                /* 1: tension is known by `capillary`, and no force */
     float *TOBI_RESTRICT pressure;            /* of the solve at hand; NULL for walls: none */
     uint8_t *TOBI_RESTRICT surface;           /* 1 at a free surface, SPH_SPARSE, or 0 */
     const uint8_t *TOBI_RESTRICT fluid;

@@ -17,8 +17,8 @@ static tobi_status note_tension(tobi_world *w, const tobi_fluid_def *def, tobi_e
     char text[TOBI_NOTE];
     if (!(def->surface_tension > 0)) return TOBI_OK;
     if (w->system[0].method->rough_tension) {
-        snprintf(text, sizeof text, tr("by %s a free surface with tension gains energy: a drop at rest "
-                 "shakes, and small ones come apart; dfsph with a support of 3 keeps it at rest\n"),
+        snprintf(text, sizeof text, tr("by %s surface tension wants a support of 3, and angles of contact "
+                 "are some 20 degrees off; dfsph with a support of 3 has them right\n"),
                  w->system[0].method->name);
         return tobi_world_add_notes(w, "fluid", def->name, text, err);
     }

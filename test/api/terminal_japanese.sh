@@ -55,7 +55,7 @@ expect 0 "" new --language=en
 says "Families of scenes"
 expect 2 "'fr'はjaでもenでもない" new dam_break --language fr
 check "its comments are Japanese" test "$(grep '//' my_dam/scene.json | grep -cE '壁|単位')" -ge 2
-expect 1 "水が水槽より高い" new dam_break high --water-height 3
+expect 1 "水が水槽（--height）より高い" new dam_break high --water-height 3
 
 old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
 for scene in rigid_blocks.json falling_box.json blocks_y_up.json fish.json parameters.py; do

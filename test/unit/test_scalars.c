@@ -2,6 +2,7 @@
    through sides and bodies, weight; and what is refused. */
 #include "calls.h"
 #include "tobiuo/tobiuo.h"
+#include "world/world.h"
 #include <math.h>
 
 #include <stdlib.h>
@@ -302,6 +303,9 @@ static void thin_heaters_give_their_power(void **state)
     advance(w, until + 1);
     advance(again, until + 1);
     assert_true(wall_of(again) == wall_of(w) && look(again).amount == look(w).amount);
+    w->sim.scalar_place[0].stored = NAN;
+    OK(tobi_world_save(w, path, &err));
+    REFUSED(tobi_world_load(again, path, &err), TOBI_DAMAGED, "the temperature of a wall is no number");
     tobi_world_destroy(again);
     tobi_world_destroy(w);
     unlink(path);
@@ -401,10 +405,11 @@ static void warm_liquid_is_thinner(const char *method)
     tobi_world_destroy(w);
 }
 
-static void warm_liquid_is_thinner_by_all(void **state)
+/* One of each way to solve for the viscosity; all four take half a minute more. */
+static void warm_liquid_is_thinner_by_two(void **state)
 {
     (void)state;
-    for (int m = 0; m < METHODS; m++) warm_liquid_is_thinner(methods[m]);
+    for (int m = 0; m < 2; m++) warm_liquid_is_thinner(methods[m]);
 }
 
 #define SAYS(TEXT, ...)                                                  \
@@ -545,7 +550,7 @@ int main(void)
         cmocka_unit_test(bodies_conduct),             cmocka_unit_test(walls_cool),
         cmocka_unit_test(warm_liquid_is_lighter),     cmocka_unit_test(thin_heaters_give_their_power),
         cmocka_unit_test(all_gravity_pulls_less),
-        cmocka_unit_test(warm_liquid_is_thinner_by_all),
+        cmocka_unit_test(warm_liquid_is_thinner_by_two),
         cmocka_unit_test(idle_values_are_noted),
         cmocka_unit_test(values_are_checked),         cmocka_unit_test(worlds_that_take_none),
     };

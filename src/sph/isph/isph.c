@@ -158,6 +158,7 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
         TOBI_TRY(sph_find_neighbors(s, clock, err));
     bind(s, m);
     m->solver.view.held = NULL;
+    m->solver.view.capillary = sph_fields_of(&s->particles)->capillary;
     m->solver.view.open = m->solver.view.fades = m->memory.vessel != SPH_VESSEL_FULL;
     m->solver.view.volume_dt = fmax(m->volume_dt, s->dt);
     m->solver.view.gap_speed = choose_gap_speed(s, m);
@@ -309,6 +310,7 @@ void isph_forces(tobi_system *s)
     without.acceleration.acts = 0;
     without.scalar.lift.acts = 0;
     without.filter = (float)choose_filter(s, m);
+    without.jumps = 1;
     sph_apply_forces(s, &without, m->kernel, &clock);
     if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     isph_bodies_remove_hydrostatic(s);

@@ -410,6 +410,7 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     const double diagonal = others + excess;
     v->source[i] = isph_volume_source(v, i, -v->slope*t.w) + t.z + v->density/v->dt*v->slope*t.w;
     if (v->keeps_volume) v->source[i] += 0.5*v->density*v->invariant[i];
+    if (v->capillary) v->source[i] += excess*v->capillary[i];
     v->excess[i] = excess;
     v->inverse_diagonal[i] = diagonal > 0 ? 1/diagonal : 0;
     v->solution[i] = v->keep*v->pressure[i] + (1 - v->keep)*v->base;
@@ -569,8 +570,9 @@ TOBI_FN void isph_brake_fall(const isph_view *v, int64_t i, const isph_projectio
 TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projection_acc *a, double *totals)
 {
     const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0));
-    const double own = isph_open(v, i, &a->lack)*v->pressure[i]/isph_density_of(v, i),
-                 mean = 2*v->gate[i]*v->surface_force*own,
+    const double open = isph_open(v, i, &a->lack), own = open*v->pressure[i]/isph_density_of(v, i),
+                 outside = v->capillary ? open*v->capillary[i]/isph_density_of(v, i) : 0,
+                 mean = 2*v->gate[i]*v->surface_force*(own - outside),
                  k = -v->slope;
     double x[3] = {k*s.x, k*s.y, k*s.z};
     double g[3], lack[3];

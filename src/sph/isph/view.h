@@ -103,6 +103,7 @@ typedef struct isph_view {
     int fluid_count;
     const tobi_float4 *phase, *interface;
     const float (*interface_tension)[TOBI_MAX_FLUIDS];     /* N/m                                       */
+    const float *capillary;          /* Pa: outside of a free surface with tension; NULL: none has it */
     const tobi_float4 *porous;       /* drag of porous zones, sph/porous.k.h; NULL: none acts            */
     const tobi_float4 *held;         /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none   */
     /* particle arrays */
