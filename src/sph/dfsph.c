@@ -210,13 +210,20 @@ static void turn(void *user, double beta)
     center(c->s, c->m, c->q, c->m->kernel->sph_center_direction, c->t[0], NULL);
 }
 
+/* Of bodies and soft solids that move. */
+static void add_answers(tobi_system *s, double *t)
+{
+    tobi_couple_product(s, t);
+    sph_soft_product(s, t);
+}
+
 static double apply(void *user)
 {
     const cg_run *c = user;
     launch(c->s, c->m, c->m->kernel->sph_pressure_accel, NULL);
     if (c->q->coupled) tobi_couple_press(c->s);
     launch(c->s, c->m, c->m->kernel->sph_product, c->t);
-    if (c->q->coupled) tobi_couple_product(c->s, c->t), sph_soft_product(c->s, c->t);
+    if (c->q->coupled) add_answers(c->s, c->t);
     center(c->s, c->m, c->q, c->m->kernel->sph_center_product, c->t[1], c->t);
     return c->t[0];
 }
@@ -331,13 +338,9 @@ static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
     launch(s, m, k->sph_source, t);
     linear_solve q = {.tolerance = first_share(s, m)*m->def.divergence_tolerance,
                .relative_tolerance = first_share(s, m)*m->def.pressure_tolerance,
-               .source = t[0],
-               .min = m->def.divergence_iterations_min,
-               .max = m->def.divergence_iterations_max,
-               .grid = 1,
-               .coupled = 1,
-               .constant_free = m->memory.vessel == SPH_VESSEL_FULL};
-    tobi_couple_product(s, NULL), sph_soft_product(s, NULL);
+               .min = m->def.divergence_iterations_min, .max = m->def.divergence_iterations_max,
+               .source = t[0], .grid = 1, .coupled = 1, .constant_free = m->memory.vessel == SPH_VESSEL_FULL};
+    add_answers(s, NULL);
     launch(s, m, k->sph_warm_residual, t);
     set_grid(s, m);
     solve_pressure(s, m, t, &q);
@@ -383,12 +386,9 @@ static void correct_density(tobi_system *s, dfsph *m, double *clock)
     double mean = t[2]*s->dt*s->dt/sph_rows(s);
     int full = m->memory.vessel == SPH_VESSEL_FULL, closes = has_void(s) && mean > m->def.density_tolerance;
     linear_solve q = {.tolerance = m->def.density_tolerance,
-               .relative_tolerance = HUGE_VAL,
-               .nothing = 1e-3 * m->def.density_tolerance,
-               .source = t[0],
-               .min = m->def.density_iterations_min,
-               .max = m->def.density_iterations_max,
-               .constant_free = full && !closes};
+               .relative_tolerance = HUGE_VAL, .nothing = 1e-3*m->def.density_tolerance,
+               .min = m->def.density_iterations_min, .max = m->def.density_iterations_max,
+               .source = t[0], .constant_free = full && !closes};
     solve_pressure(s, m, t, &q);
     shift_positions(s, m);
     s->info.density_iterations = q.iterations;

@@ -236,23 +236,28 @@ void sph_porous_answer(tobi_system *s, int body)
 
 /* --- what the liquid of the zones gets from them --------------------------------------------------- */
 
+void sph_porous_gain(const tobi_system *s, const tobi_porous *z, int64_t i, const double moves[6],
+                     double share)
+{
+    const sph_fields *f = sph_fields_of(&s->particles);
+    float *u = &s->particles.velocity[i].x, *taken = &f->porous_taken[i].x;
+    double arm[3], x[3], gained[3];
+    sph_porous_arm(s, z, i, arm);
+    sph_porous_carry(moves, arm, x);
+    sph_porous_drag_by(f->porous[i], x, gained);
+    for (int a = 0; a < s->box.dimension; a++) {
+        const float before = u[a];
+        u[a] = (float)(u[a] + share*gained[a]);
+        taken[a] += before - u[a];
+    }
+}
+
 static void join_range(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t i = begin; i < end; i++) {
         const tobi_porous *z = find_carried(s, i);
-        float *u = &s->particles.velocity[i].x, *taken = &f->porous_taken[i].x;
-        double arm[3], x[3], gained[3];
-        if (!z) continue;
-        sph_porous_arm(s, z, i, arm);
-        sph_porous_carry(z->pose.now, arm, x);
-        sph_porous_drag_by(f->porous[i], x, gained);
-        for (int a = 0; a < s->box.dimension; a++) {
-            const float before = u[a];
-            u[a] = (float)(u[a] + gained[a]);
-            taken[a] += before - u[a];
-        }
+        if (z) sph_porous_gain(s, z, i, z->pose.now, 1);
     }
 }
 

@@ -26,6 +26,9 @@ void sph_porous_answer(tobi_system *s, int body);
 void sph_porous_factor(tobi_system *s, int body);
 /* (1 + W S)^-1 of what a force alone makes of a body's velocity. */
 void sph_porous_soften(const tobi_system *s, int body, double change[6]);
+/* A particle in a zone gains that share of N of a rigid motion, m/s and rad/s. */
+void sph_porous_gain(const tobi_system *s, const tobi_porous *z, int64_t i, const double moves[6],
+                     double share);
 /* The liquid in the zones takes N of the bodies' velocities: links.answer, or that of a motion. */
 void sph_porous_join(tobi_system *s);
 /* Adds what zones take from the accelerations of the liquid to links.total, N, N m; and gives the liquid N of

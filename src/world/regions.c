@@ -16,7 +16,7 @@ static tobi_status note_tension(tobi_world *w, const tobi_fluid_def *def, tobi_e
     double support = w->system[0].smoothing.h/w->system[0].smoothing.spacing;
     char text[TOBI_NOTE];
     if (!(def->surface_tension > 0)) return TOBI_OK;
-    if (w->system[0].method->rough_tension) {
+    if (w->system[0].method->rough_angles) {
         snprintf(text, sizeof text, tr("by %s surface tension wants a support of 3, and angles of contact "
                  "are some 20 degrees off; dfsph with a support of 3 has them right\n"),
                  w->system[0].method->name);

@@ -236,20 +236,9 @@ static void move_range(const void *view, int64_t begin, int64_t end)
 {
     const spreading *u = view;
     const tobi_system *s = u->s;
-    const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t i = begin; i < end; i++) {
         const tobi_porous *z = zone_of(s, i);
-        float *now = &s->particles.velocity[i].x, *taken = &f->porous_taken[i].x;
-        double arm[3], x[3], gained[3];
-        if (!z) continue;
-        sph_porous_arm(s, z, i, arm);
-        sph_porous_carry(sph_of(s)->links.answer[z->carrier - 1], arm, x);
-        sph_porous_drag_by(f->porous[i], x, gained);
-        for (int a = 0; a < s->box.dimension; a++) {
-            const float before = now[a];
-            now[a] = (float)(now[a] + u->share*gained[a]);
-            taken[a] += before - now[a];
-        }
+        if (z) sph_porous_gain(s, z, i, sph_of(s)->links.answer[z->carrier - 1], u->share);
     }
 }
 
