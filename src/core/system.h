@@ -124,7 +124,6 @@ typedef struct tobi_method {
     int damps_waves;                             /* 1: waves lose height on the way                  */
     int rough_forces;                            /* 1: of a liquid on bodies and on solids they are not the
                                                     opposite of what the liquid feels, to a few per cent */
-    int rough_angles;                            /* 1: angles of contact are rough                   */
     /* Smoothing kernel and support radius that the parameters ask for; driven: something is moved in a
        vessel full of liquid. */
     void (*smoothing)(const void *def, int driven, int *shape, double *support);

@@ -32,7 +32,7 @@ static const tobi_param fluid_rows[] = {
     { .key = "surface_tension", REAL, AT(tobi_fluid_def, surface_tension), RANGE(0, 1e6), .unit = "N/m",
       .text = "none",
       .doc = "Tension of the free surface; water at 20 degrees C has 0.0728. It wants a support of "
-             "2.5 to 3." },
+             "3." },
     { .key = "color", COLOR, AT(tobi_fluid_def, color), .text = "speed",
       .doc = "Colour in pictures, red, green and blue; speed shows how fast the fluid is." },
     { .key = "visible", BOOL, AT(tobi_fluid_def, visible), .def = { 1 },

@@ -10,22 +10,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Curvature needs more neighbours than the shortest support reaches, docs/theory/surface_tension.md. */
+/* Curvature needs more neighbours than shorter supports reach, docs/theory/surface_tension.md. */
 static tobi_status note_tension(tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
 {
-    double support = w->system[0].smoothing.h/w->system[0].smoothing.spacing;
+    const double support = w->system[0].smoothing.h/w->system[0].smoothing.spacing;
     char text[TOBI_NOTE];
-    if (!(def->surface_tension > 0)) return TOBI_OK;
-    if (w->system[0].method->rough_angles) {
-        snprintf(text, sizeof text, tr("by %s surface tension wants a support of 3, and angles of contact "
-                 "are some 20 degrees off; dfsph with a support of 3 has them right\n"),
-                 w->system[0].method->name);
-        return tobi_world_add_notes(w, "fluid", def->name, text, err);
-    }
-    if (support > 2.5 - 1e-6) return TOBI_OK;
-    snprintf(text, sizeof text,
-             tr("surface tension needs a support of 2.5 or more (3 is better); it is %g\n"),
-             support);
+    if (!(def->surface_tension > 0) || support > 3 - 1e-6) return TOBI_OK;
+    snprintf(text, sizeof text, tr("surface tension needs a support of 2.5 or more, and drops swing too fast "
+             "below 3; it is %g\n"), support);
     return tobi_world_add_notes(w, "fluid", def->name, text, err);
 }
 

@@ -114,6 +114,5 @@ const tobi_method tobi_eisph = {
     .max_dt = choose_dt,
     .begin = begin,
     .rough_forces = 1,
-    .rough_angles = 1,
     ISPH_VERBS
 };

@@ -492,6 +492,5 @@ const tobi_method tobi_isph = {
     .fills_pipes = 1,
     .nests = 2,
     .rough_forces = 1,
-    .rough_angles = 1,
     ISPH_VERBS
 };

@@ -35,18 +35,18 @@ def jump(method, d, end):
     return mean(means), kinetic/(SIGMA*4*math.pi*r*r), drift, r/d
 
 
-def oscillate(dim, d, end, method="dfsph"):
+def oscillate(dim, d, end, method="dfsph", support=3):
     """omega^2 over Rayleigh's."""
     long, wide = 0.0103, (0.01/math.sqrt(1.03) if dim == 3 else 0.01/1.03)
     options = ["--spacing", d, "--until", end, "--set", f"output.interval={end/45!r}", "--set", "fluids[0].viscosity=0.001",
-               "--set", f"method={method}"]
+               "--set", f"method={method}", "--set", f"{method}.support={support}"]
     if dim == 2:
         options += ["--set", "dimension=2", "--set", "domain.min=[-0.008, -0.008]", "--set", "domain.max=[0.008, 0.008]",
                     "--set", "gravity=[0, 0]", "--set", f"fluids[0].fill[0].scale=[{long}, {wide!r}, 0.01]"]
     else:
         options += ["--set", f"fluids[0].fill[0].scale=[{long}, {wide!r}, {wide!r}]"]
     times, moments = [], []
-    for t, path in read_series(case.run(f"oscillation_{dim}_{d}_{method}", *options)):
+    for t, path in read_series(case.run(f"oscillation_{dim}_{d}_{method}_{support}", *options)):
         x = read_vtu(path)["Points"]
         m = []
         for k in range(2):
@@ -56,7 +56,7 @@ def oscillate(dim, d, end, method="dfsph"):
         moments.append((m[0] - m[1])/(m[0] + m[1]))
     zeros = [a + (b - a)*x/(x - y) for a, b, x, y in zip(times, times[1:], moments, moments[1:]) if x*y < 0]
     r = radius(len(x)//3, d, dim)
-    case.plot(f"{method}, {dim}-D, R/d = {r/d:.1f}", "t, s", "difference of moments", [("tobiuo", times, moments, False)])
+    case.plot(f"{method}, support {support}, {dim}-D, R/d = {r/d:.1f}", "t, s", "difference of moments", [("tobiuo", times, moments, False)])
     return (math.pi/(zeros[1] - zeros[0]))**2*RHO*r**3/((8 if dim == 3 else 6)*SIGMA), r/d
 
 
@@ -109,6 +109,9 @@ for d, end in case.pick([], [(0.0005, 0.1)]):
     case.figure(f"isph, R/d = {size:.1f}: kinetic over surface energy", stray, "< 1e-4", stray < 1e-4)
     ratio, size = oscillate(2, 0.00025, 0.09, "isph")
     case.figure(f"isph, 2-D, R/d = {size:.1f}: omega^2 over Rayleigh's", ratio, "within 0.03 of 1", abs(ratio - 1) <= 0.03)
+    for method in ("dfsph", "isph"):
+        ratio, size = oscillate(2, 0.00025, 0.09, method, 2.5)
+        case.state(f"{method}, support 2.5, 2-D, R/d = {size:.1f}: omega^2 over Rayleigh's", ratio)
     for degrees in (60, 90, 120):
         angle, swing = contact(degrees, "isph", 0.00025, 0.2)
         case.figure(f"isph: angle of contact for {degrees} degrees (swings by {swing:.1f})", angle, "within 5 degrees",
