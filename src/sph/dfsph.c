@@ -9,16 +9,13 @@
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
 #include "sph/dfsph.h"
+#include "sph/dfsph_solve.h"
 #include "sph/boundary/boundary.h"
-#include "linear/multigrid.h"
-#include "linear/solve.h"
-#include "sph/kernels.h"
 #include "sph/openings.h"
 #include "sph/porous.h"
 #include "sph/porous_carry.h"
 #include "sph/stages.h"
 #include "sph/reference.h"
-#include "sph/undo.h"
 #include "sph/viscosity.h"
 #include <math.h>
 #include <stdlib.h>
@@ -34,54 +31,11 @@ static const double SETTLED = 0.01;
 /* Share of the kernel average in the pressure a step starts from. */
 static const double PRESSURE_SMOOTHING = 0.02;
 
-/* Share of all pressure that may pull at a free surface before the rest is solved for again. */
-static const double PULL_TOLERANCE = 1e-3;
-
-/* Mean pressure of full vessels with several densities, over what their difference weighs in the whole depth.
-   Less lets particles crowd; more makes their lattice stiff. */
-static const double BASE = 0.25;
-
 /* Share of the density error in an outlet's buffer that its positions give way to in a step. */
 static const float BUFFER_RELAXATION = 0.1f;
 
 /* Spacings: the shortest support at which particle shifting closes cavities instead of stirring. */
 static const double SHIFTING_SUPPORT = 2.5;
-
-typedef struct dfsph {
-    sph_state common;                            /* comes first */
-    tobi_dfsph_def def;
-    sph_view view;
-    const sph_kernels *kernel;
-    tobi_multigrid grid;
-    sph_undo undo;
-    /* survives a restart; vessel: SPH_VESSEL_*; last: drops of the free surface, still water, openings, m */
-    struct { double speed, head, dt, vessel, low, level, open; } memory;
-    /* of the step at hand */
-    double motion_dt;             /* step that motion alone allows, s                            */
-    double diagonal;              /* mean diagonal of the operator                               */
-} dfsph;
-
-/* A run of conjugate gradients on A p = s. */
-typedef struct linear_solve {
-    double tolerance;             /* on the mean of |r| dt^2                                     */
-    double relative_tolerance;    /* on |r|/|s|                                                  */
-    double source;                /* |s|^2 in the norm of the diagonal                           */
-    double nothing;               /* mean |r| dt^2 so small that no iteration is due             */
-    int min, max;
-    int grid;                     /* 1: with the multigrid preconditioner                        */
-    int coupled;                  /* 1: bodies that move by forces answer the pressure           */
-    int constant_free;            /* 1: a constant pressure does nothing and is left out         */
-    /* results */
-    int iterations, converged;
-    double error, relative;       /* mean |r| dt^2; |r|/|s|                                      */
-    double worst;                 /* max |r|, 1/s2                                               */
-    double head;                  /* twice the mean |p|/rho, m2/s2: the bottom of a pool           */
-} linear_solve;
-
-static void launch(tobi_system *s, dfsph *m, tobi_kernel k, double *totals)
-{
-    tobi_launch(&s->sim->exec, k, &m->view, 0, s->particles.count, totals);
-}
 
 /* Shifting, without which cavities open, wants more neighbours than the shortest support reaches. */
 static void choose_smoothing(const void *def, int driven, int *shape, double *support)
@@ -150,128 +104,6 @@ static double choose_dt(tobi_system *s)
     return dt;
 }
 
-/* Pa: the mean pressure of a full vessel. Particles under negative pressure crowd: fluids of several
-   densities, which feel what is left of gravity, stay above 0. */
-static double base_pressure(const tobi_system *s)
-{
-    double depth = 0, least, most;
-    for (int a = 0; a < s->box.dimension; a++)
-        depth += fabs(s->sim->def.gravity[a] - s->gravity[a])*s->box.size[a];
-    tobi_system_densities(s, &least, &most);
-    return most > least ? BASE*(most - least)*depth : 0;
-}
-
-/* Without a free surface the constant pressure is left out: takes the mean from residual or product. */
-static void center(tobi_system *s, dfsph *m, const linear_solve *q, tobi_kernel kernel, double sum, double *t)
-{
-    if (!q->constant_free) return;
-    m->view.mean = (float)(sum/sph_rows(s));
-    launch(s, m, kernel, t);
-}
-
-/* |r|/|s| in the norm of the diagonal; a source of round-off size counts as a hundredth of what the
-   tolerance lets pass. */
-static double relative_residual(const tobi_system *s, const dfsph *m, const linear_solve *q, double rz)
-{
-    double small = 1e-2*q->tolerance/(s->dt*s->dt);
-    double floor = (double)s->particles.count*small*small/fmax(m->diagonal, 1e-300);
-    return sqrt(rz/fmax(fmax(q->source, floor), 1e-300));
-}
-
-/* The steps of conjugate gradients, in float. */
-typedef struct cg_run { tobi_system *s; dfsph *m; linear_solve *q; double *t; } cg_run;
-
-/* t: |r|^2/diagonal, |r|; largest |r|. */
-static int ends(void *user)
-{
-    const cg_run *c = user;
-    linear_solve *q = c->q;
-    q->error = c->t[1]*c->s->dt*c->s->dt/sph_rows(c->s);
-    q->worst = c->t[6];
-    q->relative = relative_residual(c->s, c->m, q, c->t[0]);
-    q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
-    return !(c->t[0] > 0) || q->iterations >= q->max || q->error <= q->nothing ||
-           (q->converged && q->iterations >= q->min) || tobi_simulation_stops(c->s->sim);
-}
-
-static double precondition(void *user)
-{
-    const cg_run *c = user;
-    const sph_fields *p = sph_fields_of(&c->s->particles);
-    if (!c->q->grid) return c->t[0];
-    return c->t[0] + tobi_multigrid_apply(&c->m->grid, &c->s->sim->exec, p->residual, p->precondition);
-}
-
-static void turn(void *user, double beta)
-{
-    const cg_run *c = user;
-    c->m->view.beta = (float)beta;
-    launch(c->s, c->m, c->m->kernel->sph_cg_direction, c->t);
-    center(c->s, c->m, c->q, c->m->kernel->sph_center_direction, c->t[0], NULL);
-}
-
-/* Of bodies and soft solids that move. */
-static void add_answers(tobi_system *s, double *t)
-{
-    tobi_couple_product(s, t);
-    sph_soft_product(s, t);
-}
-
-static double apply(void *user)
-{
-    const cg_run *c = user;
-    launch(c->s, c->m, c->m->kernel->sph_pressure_accel, NULL);
-    if (c->q->coupled) tobi_couple_press(c->s);
-    launch(c->s, c->m, c->m->kernel->sph_product, c->t);
-    if (c->q->coupled) add_answers(c->s, c->t);
-    center(c->s, c->m, c->q, c->m->kernel->sph_center_product, c->t[1], c->t);
-    return c->t[0];
-}
-
-static void advance(void *user, double alpha)
-{
-    const cg_run *c = user;
-    c->m->view.alpha = (float)alpha;
-    launch(c->s, c->m, c->m->kernel->sph_cg_update, c->t);
-    c->q->iterations++;
-}
-
-static void iterate(tobi_system *s, dfsph *m, linear_solve *q, double *t)
-{
-    static const tobi_cg_steps steps = { ends, precondition, turn, apply, advance };
-    cg_run run = { s, m, q, t };
-    tobi_cg_iterate(&steps, &run);
-}
-
-/* Particles of a free surface whose pressure came out pulling are held at none, and what the others lack
-   without their pull is the new residual, at the price of an iteration; 0 if they are next to nothing. */
-static int clamp_pressure(tobi_system *s, dfsph *m, linear_solve *q, double *t)
-{
-    double pull[TOBI_TOTALS];
-    cg_run run = { s, m, q, t };
-    if (m->memory.vessel == SPH_VESSEL_FULL || q->iterations >= q->max || s->sim->stopped) return 0;
-    launch(s, m, m->kernel->sph_clamp_pressure, pull);
-    if (!(pull[0] > PULL_TOLERANCE*pull[1])) return 0;
-    apply(&run);
-    advance(&run, 1);
-    return 1;
-}
-
-/* Solves from the state that a residual kernel left: r and the totals |r|^2/diagonal, |r|, sum r. */
-static void solve_pressure(tobi_system *s, dfsph *m, const double *start, linear_solve *q)
-{
-    const sph_kernels *k = m->kernel;
-    double t[TOBI_TOTALS];
-    memcpy(t, start, sizeof t);
-    center(s, m, q, k->sph_center_residual, t[2], t);
-    m->view.coarse = q->grid ? tobi_multigrid_values(&m->grid) : (tobi_grid_values){0};
-    do iterate(s, m, q, t); while (clamp_pressure(s, m, q, t));
-    launch(s, m, k->sph_correct_pressure, t);
-    const double base = q->grid ? base_pressure(s)*(double)s->particles.count : 0;
-    center(s, m, q, k->sph_center_pressure, t[1] - base, NULL);
-    q->head = 2*t[0]/sph_rows(s);
-}
-
 static tobi_status find_neighbors(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
 {
     if (!m->grid.memory) {
@@ -332,18 +164,18 @@ static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
     double t[TOBI_TOTALS];
     sph_stage(s, &m->view, SPH_SOLVE);
     m->view.pressure = sph_fields_of(&s->particles)->pressure;
-    launch(s, m, k->sph_warm_start, NULL);
-    launch(s, m, k->sph_pressure_accel, NULL);
+    dfsph_launch(s, m, k->sph_warm_start, NULL);
+    dfsph_launch(s, m, k->sph_pressure_accel, NULL);
     tobi_couple_press(s);
-    launch(s, m, k->sph_source, t);
-    linear_solve q = {.tolerance = first_share(s, m)*m->def.divergence_tolerance,
+    dfsph_launch(s, m, k->sph_source, t);
+    dfsph_solve q = {.tolerance = first_share(s, m)*m->def.divergence_tolerance,
                .relative_tolerance = first_share(s, m)*m->def.pressure_tolerance,
                .min = m->def.divergence_iterations_min, .max = m->def.divergence_iterations_max,
                .source = t[0], .grid = 1, .coupled = 1, .constant_free = m->memory.vessel == SPH_VESSEL_FULL};
-    add_answers(s, NULL);
-    launch(s, m, k->sph_warm_residual, t);
+    dfsph_add_answers(s, NULL);
+    dfsph_launch(s, m, k->sph_warm_residual, t);
     set_grid(s, m);
-    solve_pressure(s, m, t, &q);
+    dfsph_solve_pressure(s, m, t, &q);
     sph_porous_kick(s, &m->view, k, t);
     s->info.force_sum = t[0]*s->smoothing.volume;
     m->memory.head = fmin(q.head, sph_explained_head(s));
@@ -362,8 +194,8 @@ static void shift_positions(tobi_system *s, dfsph *m)
     double strength = m->memory.vessel == SPH_VESSEL_FULL && reaches_far(s) ? m->def.shifting : 0;
     m->view.background = (float)(strength*d*d*s->fluid[0].density/(2*s->dt*s->dt));
     m->view.relaxation = BUFFER_RELAXATION;
-    if (sph_has_openings(s)) launch(s, m, m->kernel->sph_relax_outlet, NULL);
-    launch(s, m, m->kernel->sph_shift, NULL);
+    if (sph_has_openings(s)) dfsph_launch(s, m, m->kernel->sph_relax_outlet, NULL);
+    dfsph_launch(s, m, m->kernel->sph_shift, NULL);
 }
 
 /* Whether a cavity two or three spacings wide has opened in a full vessel. Disorder makes one such particle
@@ -382,14 +214,14 @@ static void correct_density(tobi_system *s, dfsph *m, double *clock)
     double t[TOBI_TOTALS];
     sph_stage(s, &m->view, SPH_CORRECT);
     m->view.pressure = sph_fields_of(&s->particles)->correction;
-    launch(s, m, m->kernel->sph_density_residual, t);
+    dfsph_launch(s, m, m->kernel->sph_density_residual, t);
     double mean = t[2]*s->dt*s->dt/sph_rows(s);
     int full = m->memory.vessel == SPH_VESSEL_FULL, closes = has_void(s) && mean > m->def.density_tolerance;
-    linear_solve q = {.tolerance = m->def.density_tolerance,
+    dfsph_solve q = {.tolerance = m->def.density_tolerance,
                .relative_tolerance = HUGE_VAL, .nothing = 1e-3*m->def.density_tolerance,
                .min = m->def.density_iterations_min, .max = m->def.density_iterations_max,
                .source = t[0], .constant_free = full && !closes};
-    solve_pressure(s, m, t, &q);
+    dfsph_solve_pressure(s, m, t, &q);
     shift_positions(s, m);
     s->info.density_iterations = q.iterations;
     s->info.density_converged = q.converged;
