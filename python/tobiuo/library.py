@@ -106,8 +106,7 @@ def values_of(struct):
 def vector(values, what, allowed=(2, 3)):
     """Three doubles for C. In 2-D two will do."""
     if np.ndim(values) != 1 or len(values) not in allowed:
-        count = f"{len(values)} numbers" if np.ndim(values) == 1 else repr(values)
-        hint = "2 or 3 are allowed" if 2 in allowed else "3 are allowed; in 2-D it is the third"
-        raise ValueError(f"{what}: {count}, {hint}")
+        hint = "2 or 3 numbers" if 2 in allowed else "3 numbers; in 2-D the third counts"
+        raise ValueError(f"{what}: is {values!r}, must be {hint}")
     values = [float(v) for v in values]
     return ffi.new("double[3]", values + [0.0]*(3 - len(values)))

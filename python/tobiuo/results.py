@@ -12,6 +12,13 @@ from . import sampling
 from .library import array_of, call, ffi, lib, free_pointer, text_of
 
 
+class Fields(dict):
+    """Arrays by the names of fields."""
+
+    def __missing__(self, key):
+        raise KeyError(f"{key!r}; the files have: {', '.join(self)}")
+
+
 @dataclass
 class Moment:
     """One output: time (s), positions (m, n x 3) and fields of the particles, surfaces of bodies: (vertices in
@@ -61,7 +68,7 @@ class Results:
         m = ffi.new("tobi_moment *")
         call(lib.tobi_results_read, self._results, output % len(self), m)
         try:
-            fields = {}
+            fields = Fields()
             for k in range(m.field_count):
                 f = m.fields[k]
                 shape = (m.count, f.components) if f.components > 1 else (m.count,)

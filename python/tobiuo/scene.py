@@ -1,5 +1,6 @@
 """Scenes: loaded, checked, described."""
 import json
+import math
 import os
 
 from .library import Error, call, ffi, lib, raise_error, take_text, text_of
@@ -12,7 +13,22 @@ def _plain(value):
     raise TypeError(f"{value!r} is nothing that a scene holds; allowed are numbers, texts, lists, dicts and arrays")
 
 
-def _to_json(value):
+def _find_nan(value, path=""):
+    """The key and value of the first number that JSON cannot hold."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, dict):
+        inside = ((f"{path}.{key}" if path else str(key), entry) for key, entry in value.items())
+    elif isinstance(value, (list, tuple)):
+        inside = ((f"{path}[{k}]", entry) for k, entry in enumerate(value))
+    else:
+        return (path, value) if isinstance(value, float) and not math.isfinite(value) else None
+    return next((found for name, entry in inside if (found := _find_nan(entry, name))), None)
+
+
+def _to_json(value, path=""):
+    if found := _find_nan(value, path):
+        raise ValueError(f"{found[0]}: is {found[1]}, must be a finite number")
     return json.dumps(value, default=_plain)
 
 
@@ -21,7 +37,7 @@ def _overrides(values):
     if values is None:
         return ffi.NULL, []
     if isinstance(values, dict):
-        values = [f"{key}={value if isinstance(value, str) else _to_json(value)}" for key, value in values.items()]
+        values = [f"{key}={value if isinstance(value, str) else _to_json(value, key)}" for key, value in values.items()]
     elif isinstance(values, str):
         values = [values]
     kept = [ffi.new("char[]", text.encode()) for text in values]
@@ -34,7 +50,9 @@ def _read(scene, values, name):
     texts, kept = _overrides(values)
     if isinstance(scene, dict):
         scene, name = _to_json(scene), name or "scene.json"
-    scene = os.fspath(scene)
+    if not isinstance(scene, (str, bytes, os.PathLike)):
+        raise TypeError(f"a scene is a path, a text in JSON or a dict, not {scene!r}")
+    scene = os.fsdecode(scene)
     if name or scene.lstrip().startswith("{"):
         data = scene.encode()
         status = lib.tobi_scene_parse((name or "scene.json").encode(), data, len(data), texts, out, report, error)

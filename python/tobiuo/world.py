@@ -70,6 +70,16 @@ class Body:
             return values[name]
         raise AttributeError(f"a body has no {name!r}; it has: {', '.join(values)}")
 
+    def __setattr__(self, name, value):
+        if not name.startswith("_"):
+            raise AttributeError(f"a body's {name!r} cannot be set; a free body follows its forces (set_force), "
+                                 "others follow their motion (set_motion)")
+        super().__setattr__(name, value)
+
+    def __repr__(self):
+        name = text_of(lib.tobi_world_body_name(self._world._world, self._number))
+        return f"<tobiuo.Body {name!r} of {self._world!r}>"
+
     def energy(self):
         """kinetic, potential (J); power by particles, by contact, by its motion (W)."""
         out = ffi.new("tobi_body_energy *")
@@ -133,6 +143,7 @@ class World:
     @property
     def probes(self):
         """What each probe measures now: pressure, level, flow ... (tobi_probe_info)."""
+        self.start()
         return _Named(_list_names(lib.tobi_world_probe_name, self._world, ffi.NULL),
                       lambda k: self._values("tobi_probe_info", lib.tobi_world_probe, k))
 
@@ -302,7 +313,9 @@ class World:
 
     def count(self, of="fluid"):
         """Particles of fluids and solids ("fluid") or of bodies ("bodies")."""
-        return lib.tobi_world_count(self._world, self._set(of))
+        of = self._set(of)
+        self.start()
+        return lib.tobi_world_count(self._world, of)
 
     @staticmethod
     def _set(of):
@@ -336,11 +349,11 @@ class World:
         return out
 
     def write(self, field, values):
-        """Sets "velocity" or "pressure" of all particles of the fluid, in the order of `read`."""
-        self.start()
-        values = np.ascontiguousarray(values, np.float64)
-        if len(values) != self.count():
-            raise ValueError(f"{field}: {len(values)} rows for {self.count()} particles")
+        """Sets "velocity" or "pressure" of all particles of the fluid, in the order and shape of `read`."""
+        n, width = self.count(), _list_fields().get(field, (1, ""))[0]
+        values, shape = np.ascontiguousarray(values, np.float64), (n, width) if width > 1 else (n,)
+        if values.shape != shape:
+            raise ValueError(f"{field}: an array of {values.shape}, must be {shape}, as read({field!r}) gives it")
         self._call(lib.tobi_world_write, field.encode(), ffi.from_buffer("double[]", values), len(values))
 
     def pieces(self):

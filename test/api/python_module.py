@@ -276,6 +276,8 @@ class Module(unittest.TestCase):
             tobiuo.Results("nowhere")
         with self.assertRaisesRegex(FileNotFoundError, "probe.csv is not there; tables of the run: bodies, history"):
             results.table("probe")
+        with self.assertRaisesRegex(KeyError, "'speed'; the files have: velocity"):
+            results[0].fields["speed"]
         self.assertEqual((repr(world.bodies), repr(world.lines)), ("<float>", "<none>"))
 
     def test_columns_are_found_without_their_units(self):
@@ -310,7 +312,7 @@ class Module(unittest.TestCase):
 
     def test_particles_are_arrays(self):
         with tobiuo.World(POOL) as world:
-            self.assertEqual(world.count(), 0)
+            self.assertEqual(world.count(), 600)
             place = world.read("position")
             self.assertEqual(place.shape, (600, 3))
             self.assertEqual(world.fields()["velocity"], (3, "m/s"))
@@ -320,10 +322,12 @@ class Module(unittest.TestCase):
             np.testing.assert_allclose(world.read("velocity"), velocity, atol=1e-7)
             self.assertEqual(world.read("pressure").shape, (600,))
             self.assertEqual(list(world.ids()), list(range(600)))
-            for wrong, text in ((lambda: world.write("velocity", velocity[1:]), "599 rows for 600"),
+            for wrong, text in ((lambda: world.write("velocity", velocity[1:]), r"\(599, 3\), must be \(600, 3\)"),
+                                (lambda: world.write("velocity", velocity[:, :2]), r"must be \(600, 3\)"),
+                                (lambda: world.write("pressure", velocity), r"must be \(600,\), as read"),
                                 (lambda: world.read("position", of="air"), "fluid, bodies"),
-                                (lambda: world.set_gravity([1]), "1 numbers"),
-                                (lambda: world.set_gravity(-9.81), "gravity: -9.81, 2 or 3 are allowed")):
+                                (lambda: world.set_gravity([1]), r"\[1\], must be 2 or 3 numbers"),
+                                (lambda: world.set_gravity(-9.81), "gravity: is -9.81, must be 2 or 3 numbers")):
                 with self.assertRaisesRegex(ValueError, text):
                     wrong()
             with self.assertRaisesRegex(tobiuo.Error, "there is no field 'colour'"):
@@ -341,7 +345,7 @@ class Module(unittest.TestCase):
             self.assertAlmostEqual(ball.position[2], 2.2, 1)
             self.assertGreater(ball.position[2], 2.1)
             for torque in (2, [0, 2]):
-                with self.assertRaisesRegex(ValueError, "torque: .* 3 are allowed; in 2-D it is the third"):
+                with self.assertRaisesRegex(ValueError, "torque: .* must be 3 numbers; in 2-D the third counts"):
                     ball.set_force([0, 0, 0], torque)
             self.assertEqual(ball.inertia.shape, (3, 3))
             parts = {"kinetic", "potential", "power", "contact_power", "motion_power", "force_power", "air_power",
@@ -349,6 +353,9 @@ class Module(unittest.TestCase):
             self.assertEqual(set(ball.energy()), parts)
             with self.assertRaisesRegex(AttributeError, "position, orientation"):
                 ball.colour
+            with self.assertRaisesRegex(AttributeError, "'velocity' cannot be set; .*set_force"):
+                ball.velocity = [0, 0, 0]
+            self.assertIn("Body 'ball' of <tobiuo.World", repr(ball))
             with self.assertRaisesRegex(KeyError, "there are: ball"):
                 world.bodies["bat"]
 
@@ -443,6 +450,14 @@ class Module(unittest.TestCase):
         self.assertEqual(tobiuo.check(arrays, set={"spacing": np.float32(POOL["spacing"]), "end_time": np.int64(1)}), [])
         with self.assertRaisesRegex(TypeError, "nothing that a scene holds"):
             tobiuo.check({**POOL, "spacing": {1, 2}})
+        for wrong, at in (({**POOL, "domain": {"min": [0, np.nan], "max": [1, 1]}}, r"domain.min\[1\]: is nan"),
+                          ({**POOL, "end_time": float("inf")}, "end_time: is inf, must be a finite number")):
+            with self.assertRaisesRegex(ValueError, at):
+                tobiuo.check(wrong)
+        with self.assertRaisesRegex(ValueError, "fluids.water.viscosity: is nan"):
+            tobiuo.check(POOL, set={"fluids.water.viscosity": float("nan")})
+        with self.assertRaisesRegex(TypeError, r"a scene is a path, a text in JSON or a dict, not \[\]"):
+            tobiuo.World([])
         self.assertIn("none.json", tobiuo.check("none.json")[0])
         with self.assertRaisesRegex(tobiuo.Error, "spacing: is the text") as caught:
             tobiuo.World(POOL, set="spacing=thick")
