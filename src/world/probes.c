@@ -12,6 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* So deep in a body a place of a patch is not on its surface, spacings: flat patches on round hulls dip. */
+static const double BURIED = 0.4;
+
 static int has_box(int kind)
 {
     return kind == TOBI_PROBE_PATCH || kind == TOBI_PROBE_FLOW || kind == TOBI_PROBE_VOLUME;
@@ -184,33 +187,6 @@ static int move_inside(const tobi_world *w, double deep, double x[3])
     return moved;
 }
 
-/* What lies in a body has no liquid: its values are those of what the kernels reach, or 0. */
-tobi_status tobi_world_note_probes(tobi_world *w, tobi_error *err)
-{
-    const double deep = 0.5*w->sim.def.spacing;
-    for (int k = 0; k < w->probe_count; k++) {
-        const tobi_probe *p = &w->probes[k];
-        double x[3];
-        tobi_bvh_hit hit;
-        char text[TOBI_NOTE];
-        if (p->def.kind != TOBI_PROBE_POINT) continue;
-        for (int a = 0; a < 3; a++)
-            x[a] = a < w->sim.def.dimension ? p->def.position[a] - w->system[0].box.lower[a] : 0;
-        const int moved = move_inside(w, deep, x);
-        for (int b = 0; b < w->sim.body_count; b++) {
-            const tobi_bvh *bvh = w->sim.bodies[b].bvh;
-            if (!tobi_bvh_inside(bvh, x) || tobi_bvh_closest(bvh, x, (moved ? 0.98 : 1)*deep, &hit)) continue;
-            snprintf(text, sizeof text, moved ?
-                     tr("lies between a side of the domain and body '%s' at the start, where there is no "
-                        "liquid, so that its pressure is 0: let it lie on a surface that liquid reaches\n") :
-                     tr("lies deep in body '%s' at the start, where there is no liquid: let it lie on the "
-                        "surface\n"), w->sim.bodies[b].name);
-            TOBI_TRY(tobi_world_add_notes(w, "probe", p->name, text, err));
-        }
-    }
-    return TOBI_OK;
-}
-
 int tobi_world_probe_count(const tobi_world *w) { return w ? w->probe_count : 0; }
 
 const char *tobi_world_probe_name(const tobi_world *w, int probe, tobi_probe_kind *kind)
@@ -248,6 +224,65 @@ static void make_box(const tobi_world *w, const tobi_probe *p, const tobi_body *
     box->size[0] = def->length;
     box->size[1] = w->sim.def.dimension == 2 ? 1 : def->width;
     box->size[2] = def->kind == TOBI_PROBE_VOLUME ? def->height : 0;
+}
+
+static tobi_status note_point(tobi_world *w, const tobi_probe *p, tobi_error *err)
+{
+    const double deep = 0.5*w->sim.def.spacing;
+    double x[3];
+    tobi_bvh_hit hit;
+    char text[TOBI_NOTE];
+    for (int a = 0; a < 3; a++)
+        x[a] = a < w->sim.def.dimension ? p->def.position[a] - w->system[0].box.lower[a] : 0;
+    const int moved = move_inside(w, deep, x);
+    for (int b = 0; b < w->sim.body_count; b++) {
+        const tobi_bvh *bvh = w->sim.bodies[b].bvh;
+        if (!tobi_bvh_inside(bvh, x) || tobi_bvh_closest(bvh, x, (moved ? 0.98 : 1)*deep, &hit)) continue;
+        snprintf(text, sizeof text, moved ?
+                 tr("lies between a side of the domain and body '%s' at the start, where there is no "
+                    "liquid, so that its pressure is 0: let it lie on a surface that liquid reaches\n") :
+                 tr("lies deep in body '%s' at the start, where there is no liquid: let it lie on the "
+                    "surface\n"), w->sim.bodies[b].name);
+        TOBI_TRY(tobi_world_add_notes(w, "probe", p->name, text, err));
+    }
+    return TOBI_OK;
+}
+
+/* A patch that is longer than its wall, or that lies across it, has a mean over places without liquid. */
+static tobi_status note_patch(tobi_world *w, const tobi_probe *p, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    double x[3], arm[3];
+    tobi_bvh_hit hit;
+    char text[TOBI_NOTE];
+    tobi_sensor_box box;
+    make_box(w, p, NULL, &box);
+    for (int b = 0; b < w->sim.body_count; b++) {
+        const tobi_bvh *bvh = w->sim.bodies[b].bvh;
+        int buried = 0, places = 0;
+        for (int k = 0, n; (n = tobi_sensor_place(s, &box, k, arm)) > 0; k++, places = n) {
+            for (int a = 0; a < 3; a++)
+                x[a] = a < s->box.dimension ? box.middle[a] + arm[a] - s->box.lower[a] : 0;
+            buried += tobi_bvh_inside(bvh, x) && !tobi_bvh_closest(bvh, x, BURIED*s->smoothing.spacing, &hit);
+        }
+        if (buried == 0) continue;
+        snprintf(text, sizeof text, tr("%d of its %d places lie in body '%s' at the start, where there is no "
+                                       "liquid: its length is along (%g, %g, %g)\n"), buried, places,
+                 w->sim.bodies[b].name, box.axis[0][0], box.axis[0][1], box.axis[0][2]);
+        TOBI_TRY(tobi_world_add_notes(w, "probe", p->name, text, err));
+    }
+    return TOBI_OK;
+}
+
+/* What lies in a body has no liquid: its values are those of what the kernels reach, or 0. */
+tobi_status tobi_world_note_probes(tobi_world *w, tobi_error *err)
+{
+    for (int k = 0; k < w->probe_count; k++) {
+        const tobi_probe *p = &w->probes[k];
+        if (p->def.kind == TOBI_PROBE_POINT) TOBI_TRY(note_point(w, p, err));
+        if (p->def.kind == TOBI_PROBE_PATCH) TOBI_TRY(note_patch(w, p, err));
+    }
+    return TOBI_OK;
 }
 
 static void measure_run_up(const tobi_world *w, const tobi_probe *p, const tobi_body *b,

@@ -201,6 +201,29 @@ static void tells_points_in_bodies(void **state)
     }
 }
 
+/* A patch on the block's face; one that lies across it, whose last two of four places are in the block. */
+static void tells_patches_in_bodies(void **state)
+{
+    tobi_world *world = make_tank_with_block("dfsph");
+    tobi_error err;
+    tobi_probe_def p = tobi_default_probe_def();
+    const char *note = NULL;
+    int told = 0;
+    (void)state;
+    p.kind = TOBI_PROBE_PATCH, p.length = 0.04;
+    p.position[0] = 0.06, p.position[1] = 0.03;
+    p.name = "face", p.normal[0] = -1;
+    assert_int_equal(tobi_world_add_probe(world, &p, &err), TOBI_OK);
+    p.name = "across", p.normal[0] = 0, p.normal[1] = 1;
+    assert_int_equal(tobi_world_add_probe(world, &p, &err), TOBI_OK);
+    assert_int_equal(tobi_world_start(world, &err), TOBI_OK);
+    for (int n = 0; tobi_world_note(world, n); n++)
+        if (strstr(tobi_world_note(world, n), "probe '") && ++told) note = tobi_world_note(world, n);
+    assert_int_equal(told, 1);
+    assert_non_null(strstr(note, "probe 'across': 2 of its 4 places lie in body 'block'"));
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -210,6 +233,7 @@ int main(void)
         cmocka_unit_test(refuses_probes_outside),
         cmocka_unit_test(reads_the_foot_of_a_body),
         cmocka_unit_test(tells_points_in_bodies),
+        cmocka_unit_test(tells_patches_in_bodies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -81,6 +81,7 @@ static void assert_close(double got, double wanted, double within, const char *w
 }
 
 static void at_rest(const double x[3], double *p) { *p = 9810*(0.1 - x[2]); }
+static void towards_the_block(const double x[3], double *v) { (void)x, v[0] = -1, v[1] = v[2] = 0; }
 static void uniform(const double x[3], double *v) { (void)x, v[0] = 0.5, v[1] = 0.25, v[2] = -1; }
 
 /* A rectangle in the water, away from walls: the fit of a linear pressure is exact. */
@@ -162,6 +163,28 @@ static void volumes_are_exact(void **state)
         assert_close(measure(world, &p).volume, 0.0431*0.04*(flat ? 1 : 0.0619), 1e-9, "part");
         tobi_world_destroy(world);
     }
+}
+
+/* Water that is thrown at the sides and at a block comes nearer to them than half a spacing: a box that ends
+   there holds all of it still. */
+static void a_volume_ends_at_walls(void **state)
+{
+    (void)state;
+    tobi_world *world = make_tank(2, -9.81, 0.1, "dfsph");
+    tobi_body_def b = tobi_default_body_def();
+    b.name = "block";
+    set_vector(b.box_max, 0.05, 0.2, 0);
+    OK(tobi_world_add_body(world, &b, &err));
+    OK(tobi_world_start(world, &err));
+    set_field(world, "velocity", 3, towards_the_block);
+    tobi_probe_def p = make("all", TOBI_PROBE_VOLUME, 0.125, 0.1, 0);
+    set_sizes(&p, 0.15, 0, 0.2);
+    const double whole = measure(world, &p).volume;
+    assert_close(whole, 0.15*0.1, 1e-12, "at the start");
+    p.name = "again";
+    OK(tobi_world_advance(world, 0.08, NULL, &err));
+    assert_close(measure(world, &p).volume, whole, 1e-6*whole, "after it was thrown about");
+    tobi_world_destroy(world);
 }
 
 /* A rectangle on a body that turns in water at rest: minus (omega x r) n times its area. */
@@ -556,6 +579,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_patch_in_still_water), cmocka_unit_test(a_patch_on_a_wall),
         cmocka_unit_test(uniform_flow_is_exact), cmocka_unit_test(volumes_are_exact),
+        cmocka_unit_test(a_volume_ends_at_walls),
         cmocka_unit_test(a_turning_rectangle), cmocka_unit_test(a_point_rides_on_a_body),
         cmocka_unit_test(levels_of_the_main_body_of_water), cmocka_unit_test(a_dry_floor_and_a_block),
         cmocka_unit_test(a_run_up_ends_at_the_surface), cmocka_unit_test(low_passes),

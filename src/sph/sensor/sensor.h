@@ -32,6 +32,8 @@ double tobi_sensor_level(const tobi_system *s, int fluid, const double x[3]);
 /* The axis that a level counts along, and the sign of up. */
 int tobi_sensor_up(const tobi_system *s, double *sign);
 
+/* Place k of a rectangle, from its middle, m: how many there are; 0: k is beyond the last. */
+int tobi_sensor_place(const tobi_system *s, const tobi_sensor_box *box, int k, double arm[3]);
 /* On a rectangle: mean pressure, Pa; force of the fluid on it, N, and moment about its middle, N m.
    Places on a
    side or a body (nearer than half a spacing) feel what the fluid exerts there, others its pressure
