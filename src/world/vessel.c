@@ -9,8 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is known of a cell: free of the body; no wall to the next one along x, y, z; reached from outside. */
-enum { FREE = 1, LINK = 2, OUTSIDE = 16 };
+/* What is known of a cell: free of the body; no wall to the next one along x, y, z; reached from outside;
+   held by other bodies without the vessel. */
+enum { FREE = 1, LINK = 2, OUTSIDE = 16, HELD = 32 };
 enum { HALVINGS = 30 };
 /* Of a cell: nearer to a wall than that is on it. */
 static const double ON_SURFACE = 1e-6;
@@ -21,6 +22,7 @@ typedef struct flood {
     const tobi_body *b;
     const tobi_body *wall;           /* whose walls part compartments: the vessel, or all bodies        */
     int walls;
+    const tobi_body *without;        /* of them, this one does not count                                */
     double d, lower[3], up[3];
     int dimension, up_axis;          /* up_axis: the one that up follows, -1 = none                     */
     double level;                    /* m, along up                                                     */
@@ -61,14 +63,14 @@ static double height(const flood *f, const double x[3])
 static int is_inside(const flood *f, const double x[3])
 {
     for (int k = 0; k < f->walls; k++)
-        if (tobi_bvh_inside(f->wall[k].bvh, x)) return 1;
+        if (&f->wall[k] != f->without && tobi_bvh_inside(f->wall[k].bvh, x)) return 1;
     return 0;
 }
 
 static int is_parted(const flood *f, const double from[3], const double to[3])
 {
     for (int k = 0; k < f->walls; k++)
-        if (tobi_bvh_segment_hits(f->wall[k].bvh, from, to)) return 1;
+        if (&f->wall[k] != f->without && tobi_bvh_segment_hits(f->wall[k].bvh, from, to)) return 1;
     return 0;
 }
 
@@ -78,7 +80,7 @@ static int is_wall(const flood *f, const double x[3])
 {
     tobi_bvh_hit hit;
     for (int k = 0; k < f->walls; k++)
-        if (tobi_bvh_closest(f->wall[k].bvh, x, ON_SURFACE*f->d, &hit)) return 1;
+        if (&f->wall[k] != f->without && tobi_bvh_closest(f->wall[k].bvh, x, ON_SURFACE*f->d, &hit)) return 1;
     return is_inside(f, x);
 }
 
@@ -90,8 +92,9 @@ static void mark_range(const void *view, int64_t begin, int64_t end)
         int64_t at[3];
         place(f, c, x);
         split(f, c, at);
+        f->mark[c] &= HELD;
         if (is_wall(f, x)) continue;
-        f->mark[c] = FREE;
+        f->mark[c] |= FREE;
         for (int a = 0; a < f->dimension; a++) {
             memcpy(next, x, sizeof next);
             next[a] += f->d;
@@ -205,11 +208,13 @@ static int64_t find_cell(const flood *f, const double x[3])
 
 static int has_seed(const tobi_region *r) { return r->seed[0] > -1e9; }
 
-/* The compartment that is asked for: 0 = all, -1 = there is none. */
+/* The compartment that is asked for: 0 = all, -1 = there is none, or other bodies hold them all. */
 static int choose(const flood *f, const tobi_region *r, const double lower[3])
 {
     double seed[3];
-    if (!has_seed(r)) return f->compartments > 0 ? 0 : -1;
+    int own = 0;
+    for (int64_t c = 0; c < f->cells && !own; c++) own = f->label[c] > 0 && !(f->mark[c] & HELD);
+    if (!has_seed(r)) return own ? 0 : -1;
     for (int a = 0; a < 3; a++) seed[a] = r->seed[a] - lower[a];
     const int64_t c = find_cell(f, seed);
     return c >= 0 && f->label[c] > 0 ? f->label[c] : -1;
@@ -234,6 +239,21 @@ static int64_t find_leak(flood *f, int wanted)
         }
     }
     return -1;
+}
+
+/* Where the vessel alone does not hold liquid, other bodies may close its holes: a gate, a plug, a lid. */
+static void close_holes(flood *f, const tobi_world *w)
+{
+    f->wall = w->sim.bodies;
+    f->walls = w->sim.body_count;
+    f->without = f->b;
+    tobi_loop(w->sim.exec.threads, f->cells, 4096, mark_range, f);
+    find_compartments(f);
+    for (int64_t c = 0; c < f->cells; c++)
+        if (f->label[c] > 0) f->mark[c] |= HELD;
+    f->without = NULL;
+    tobi_loop(w->sim.exec.threads, f->cells, 4096, mark_range, f);
+    find_compartments(f);
 }
 
 static tobi_status find_nothing(const flood *f, const tobi_region *r, const char *whose, tobi_error *err)
@@ -545,7 +565,11 @@ static tobi_status resolve(tobi_world *w, int *number, tobi_error *err)
     tobi_status status = find_vessel(w, &r, whose, &f, err);
     if (status == TOBI_OK) status = lay_cells(&f, w, err);
     if (status == TOBI_OK) find_compartments(&f);
-    const int wanted = status == TOBI_OK ? choose(&f, &r, corner) : -1;
+    int wanted = status == TOBI_OK ? choose(&f, &r, corner) : -1;
+    if (status == TOBI_OK && wanted < 0 && !has_seed(&r)) {
+        close_holes(&f, w);
+        wanted = choose(&f, &r, corner);
+    }
     if (status == TOBI_OK && wanted < 0) status = refuse(&f, w, &r, whose, err);
     for (int k = 1; status == TOBI_OK && k <= f.compartments; k++)
         if (wanted == 0 || k == wanted) status = check_overlap(&f, k, w, &r, whose, err);

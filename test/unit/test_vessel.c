@@ -237,6 +237,25 @@ static void test_bulkheads(void **state)
     refuse(parted, both, "", "no wall that reaches above both levels parts the seeds");
 }
 
+/* A plug in the hole of a cup, or a gate before it, holds the liquid; a mug in a cup that leaks does not. */
+static void test_closed_holes(void **state)
+{
+    static const char level[] = "{ \"vessel\": \"cup\", \"level\": 0.7 }";
+    static const struct { const char *min, *max; int count; } closes[] = {
+        { "[1, 0.4, 0.4]", "[1.2, 0.6, 0.6]", 700 }, { "[1.2, 0.3, 0.3]", "[1.3, 0.7, 0.7]", 700 + 2*2*2 } };
+    char bodies[700];
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        snprintf(bodies, sizeof bodies, "%s, { \"name\": \"gate\", \"box\": { \"min\": %s, \"max\": %s } "
+                 "}", holed, closes[k].min, closes[k].max);
+        assert_int_equal(fill(bodies, level), closes[k].count);
+    }
+    snprintf(bodies, sizeof bodies, "%s, { \"name\": \"mug\", \"box\": { \"min\": [0.2, 0.2, 0.2], \"max\": "
+             "[0.6, 0.6, 0.9] }, \"vessel\": true, \"wall_thickness\": 0.1, \"open_side\": [0, 0, 1] }",
+             holed);
+    refuse(bodies, level, "", "vessel 'cup' holds liquid up to");
+}
+
 /* A block of ice, half in the water of a cup: the water starts around it. */
 static void test_solid_inside(void **state)
 {
@@ -386,7 +405,7 @@ int main(void)
         cmocka_unit_test(test_channel), cmocka_unit_test(test_walls),       cmocka_unit_test(test_levels),
         cmocka_unit_test(test_open_sides),
         cmocka_unit_test(test_compartments), cmocka_unit_test(test_bulkheads),
-        cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_closed_holes),     cmocka_unit_test(test_mistakes),
         cmocka_unit_test(test_solid_inside), cmocka_unit_test(test_walls_on_cells),
         cmocka_unit_test(test_later_fluids),
         cmocka_unit_test(test_wrong_calls),
