@@ -242,10 +242,11 @@ static void test_closed_holes(void **state)
 {
     static const char level[] = "{ \"vessel\": \"cup\", \"level\": 0.7 }";
     static const struct { const char *min, *max; int count; } closes[] = {
-        { "[1, 0.4, 0.4]", "[1.2, 0.6, 0.6]", 700 }, { "[1.2, 0.3, 0.3]", "[1.3, 0.7, 0.7]", 700 + 2*2*2 } };
+        { "[1, 0.4, 0.4]", "[1.2, 0.6, 0.6]", 700 }, { "[1.2, 0.3, 0.3]", "[1.3, 0.7, 0.7]", 700 + 2*2*2 },
+        { "[1.15, 0.3, 0.3]", "[1.3, 0.7, 0.7]", 700 + 2*2 } };        /* rows of the cup, not of all */
     char bodies[700];
     (void)state;
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 3; k++) {
         snprintf(bodies, sizeof bodies, "%s, { \"name\": \"gate\", \"box\": { \"min\": %s, \"max\": %s } "
                  "}", holed, closes[k].min, closes[k].max);
         assert_int_equal(fill(bodies, level), closes[k].count);
