@@ -12,6 +12,11 @@ int sph_has_openings(const tobi_system *s);
 void sph_openings_mark(tobi_system *s, sph_view *v);
 /* Pressures of inlets go on by `share` to those of the free liquid beside them; in the records too. */
 void sph_openings_continue(tobi_system *s, double share);
+/* The same of outlets that give a pressure: from their plane on it changes along the normal as before it. */
+void sph_openings_slope(tobi_system *s);
+/* How much farther beyond the plane of an outlet that gives a pressure a held particle is than i is before
+   it: 0 where there is none. still: Pa, of liquid at rest, how much more i has than the held one. */
+double sph_openings_stretch(const tobi_system *s, int64_t i, int64_t held, double *still);
 /* After forces: gives inlets their velocities again, outlets that of the free liquid around or their own. */
 void sph_openings_hold(tobi_system *s);
 /* After pressure, before positions: the same of inlets; outlets get the mean velocity of the free liquid

@@ -102,6 +102,19 @@ static tobi_status repeat(tobi_system *s, int64_t of, const double x[3], tobi_er
     return TOBI_OK;
 }
 
+/* To the nearest column of a lattice over the patch: columns stay as far from each other as they are. */
+static void snap(const tobi_opening *o, double d, double at[3])
+{
+    double u[2];
+    for (int a = 0; a < 2; a++) {
+        const double side = o->radius > 0 ? o->radius : o->half[a], n = fmax(1, floor(2*side/d + 0.5));
+        u[a] = side > 0 ? side*((2*fmin(fmax(floor(0.5*(at[1 + a]/side + 1)*n), 0), n - 1) + 1)/n - 1) : 0;
+    }
+    if (o->radius > 0 && u[0]*u[0] + u[1]*u[1] > o->radius*o->radius) return;
+    at[1] = u[0];
+    at[2] = u[1];
+}
+
 static tobi_status fill(tobi_world *w, const tobi_opening *o, int64_t count, tobi_error *err)
 {
     tobi_system *s = &w->system[0];
@@ -109,7 +122,8 @@ static tobi_status fill(tobi_world *w, const tobi_opening *o, int64_t count, tob
     const int64_t before = s->particles.count;
     for (int64_t k = 0; k < count; k++) {
         const tobi_beyond *b = &w->beyond[k];
-        const double at[3] = { b->at[0] + d, b->at[1], b->at[2] };
+        double at[3] = { b->at[0] + d, b->at[1], b->at[2] };
+        snap(o, d, at);
         if (b->at[0] < 0 || at[0] > end || !is_free(w->beyond, count, k, at, ROOM*d)) continue;
         double x[3];
         int free = 1;

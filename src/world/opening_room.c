@@ -122,19 +122,21 @@ static const char *find_free_outlet(const tobi_simulation *s)
     return NULL;
 }
 
-/* A full pipe that nothing but pressures at its ends drives. */
+/* A full pipe that nothing but pressures at its ends drives, by a method that does not carry it. */
 static tobi_status note_ends(tobi_world *w, tobi_error *err)
 {
     const tobi_opening *o = w->sim.openings, *first = NULL;
+    char text[TOBI_NOTE];
     int ends = 0;
     for (int k = 0; k < w->sim.opening_count; k++) {
         if (!o[k].outlet) return TOBI_OK;
         if (o[k].gives && ends++ == 0) first = &o[k];
     }
-    if (ends < 2) return TOBI_OK;
-    return tobi_world_add_notes(w, "outlet", first->name, tr("drives a full pipe by its pressure: such a "
-                                "flow comes to a stop after a while; an inlet with a speed or a flow_rate "
-                                "keeps it up\n"), err);
+    if (ends < 2 || !w->system[0].method->sound) return TOBI_OK;
+    snprintf(text, sizeof text, tr("drives a full pipe by its pressure: by %s such a flow swings more and "
+             "more until it diverges; isph carries it, and an inlet with a speed or a flow_rate keeps it "
+             "steady\n"), w->system[0].method->name);
+    return tobi_world_add_notes(w, "outlet", first->name, text, err);
 }
 
 tobi_status tobi_openings_note(tobi_world *w, tobi_error *err)

@@ -361,6 +361,7 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     isph_forces_correct(&m->solver, s);
     sph_soft_correct(s, m->solver.view.solution);
     sph_openings_continue(s, 1);
+    sph_openings_slope(s);
     isph_porous_compare(&m->solver, s);
     launch(s, m, m->kernel->isph_projection, t);
     m->solver.view.porous = NULL;

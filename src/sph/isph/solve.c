@@ -9,6 +9,7 @@
 #include "sph/scalars.h"
 #include "sph/isph/surface.h"
 #include "sph/isph/sweeps.h"
+#include "sph/openings.h"
 #include "sph/soft.h"
 #include <math.h>
 #include <string.h>
@@ -257,26 +258,35 @@ static tobi_linear_report run_with_pockets(isph_solver *m, const tobi_linear_sys
     return again ? run(m, found > 0 ? &centered : a) : report;
 }
 
-/* Neighbours in buffers: those of an outlet have a given pressure, which goes to the source; those of an
-   inlet do not move by pressure, so that nothing passes between them and a row. */
+/* Neighbours in buffers. Those of an outlet have a given pressure, which goes to the source. Where that is
+   the pressure of a plane, it goes on beyond it along the line between both, so that the row has it at the
+   plane: were it that of the whole buffer, the plane would be some spacings beyond. Those of an inlet do not
+   move by pressure, so that nothing passes between them and a row. */
 static void take_held(const void *view, int64_t begin, int64_t end, double *totals)
 {
-    const isph_view *v = view;
+    const isph_solver *m = view;
+    const isph_view *v = &m->view;
     (void)totals;
     for (int64_t i = begin; i < end; i++) {
         const int64_t first = 8*(int64_t)v->list_start[i];
-        double sum = 0, less = 0;
+        double sum = 0, more = 0;
         for (int k = 0; k < 8*v->list_groups[i]; k++) {
             const int32_t j = tobi_list_at(v->list, v->list_far, i, first + k);
             float *a = &v->entry[first + k];
-            if (v->held[j].w < 0) sum += *a*(double)v->pressure[j];
+            if (v->held[j].w < 0 && *a != 0) {
+                double still = 0;
+                const double part = v->gate[i] > 0 ? 0 : *a*sph_openings_stretch(m->system, i, j, &still);
+                sum += *a*(double)v->pressure[j] + part*(v->pressure[j] + still);
+                v->excess[i] += part;
+                more += part;
+            }
             if (!(v->held[j].w > 0)) continue;
-            less += *a;
+            more -= *a;
             *a = 0;
         }
         v->source[i] += sum;
-        if (!(less > 0) || !(v->inverse_diagonal[i] > 0)) continue;
-        const double left = 1/v->inverse_diagonal[i] - less;
+        if (more == 0 || !(v->inverse_diagonal[i] > 0)) continue;
+        const double left = 1/v->inverse_diagonal[i] + more;
         v->inverse_diagonal[i] = left > 1e-6*v->full ? 1/left : 0;
     }
 }
@@ -289,7 +299,7 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
     m->view.gravity_dt = (float)m->view.dt;
     tobi_launch(m->exec, m->kernel->isph_rows, &m->view, 0, n, t);
     isph_forces_add_expected(m);
-    if (m->view.held) tobi_launch(m->exec, TOBI_HOST(take_held, 0, 0), &m->view, 0, n, NULL);
+    if (m->view.held) tobi_launch(m->exec, TOBI_HOST(take_held, 0, 0), m, 0, n, NULL);
     m->view.source_mean = t[1]/(double)n;
     if (!m->view.open && t[0] > 0) tobi_launch(m->exec, m->kernel->isph_balance, &m->view, 0, n, NULL);
     const int grid = m->def->preconditioner == TOBI_MULTIGRID && m->sweeps.count == 0;
