@@ -1,7 +1,8 @@
 #!/bin/bash
 # Installs what is missing, builds the release preset with its tests, runs them.
-# usage: ./test.sh                 everything, about ten minutes with the build
-#        ./test.sh NAME            only the tests whose name matches (a regular expression)
+# usage: ./test.sh                 all but the long physics cases, about ten minutes with the build on two cores
+#        ./test.sh --all           these too, twice the time
+#        ./test.sh NAME            only the tests whose name matches (a regular expression), long ones too
 #        ./test.sh --slow [CASE] [--stale] [--reference DIR]
 #                                  physics cases at reference size; rows and plots go to docs/validation.
 #                                  --stale: those whose page is older than its method or case; says how long that
@@ -13,7 +14,7 @@ set -uo pipefail
 from=$PWD      # where a relative folder starts
 cd "$(dirname "$0")"
 begin=$SECONDS
-limit=${TOBIUO_TEST_LIMIT:-690}      # s, for the whole of an ordinary run: a slow machine is no failure
+limit=${TOBIUO_TEST_LIMIT:-1100}     # s, for the whole of an ordinary run: a slow machine is no failure
 reference=${TOBIUO_REFERENCE:-}
 python=/usr/bin/python3
 [ -x $python ] || python=python3
@@ -51,10 +52,10 @@ list_cases() {      # [CASE]: names, or an error
     done
 }
 
-run_fast() {
+run_fast() {        # options of ctest that choose tests
     local log=build/test.log left=$((limit - (SECONDS - begin)))
     timeout $((left > 1 ? left : 1)) ctest --test-dir build/release -j "$(nproc)" --timeout 240 --output-on-failure \
-        --no-tests=error ${1:+-R "$1"} 2>&1 < /dev/null | tee $log
+        --no-tests=error "$@" 2>&1 < /dev/null | tee $log
     local code=${PIPESTATUS[0]}
     [ "$code" -eq 124 ] && echo "test: stopped after $limit s; tests that did not end count as failed"
     # A test that did not report Passed or Skipped has failed.
@@ -71,7 +72,8 @@ run_fast() {
 }
 
 case ${1:-} in
--h|--help) sed -n '2,11s/^# //p' "$0"; exit 0 ;;
+-h|--help) sed -n '2,12s/^# //p' "$0"; exit 0 ;;
+--all) limit=${TOBIUO_TEST_LIMIT:-3600}; prepare; run_fast ;;
 --slow)
     shift
     wanted= stale=0
@@ -101,5 +103,6 @@ case ${1:-} in
     run_slow $cases
     ;;
 -*) echo "test: unknown option $1 (see ./test.sh --help)" >&2; exit 2 ;;
-*) prepare; run_fast "${1:-}" ;;
+'') prepare; run_fast -LE '^long$' ;;
+*) limit=${TOBIUO_TEST_LIMIT:-3600}; prepare; run_fast -R "$1" ;;
 esac
