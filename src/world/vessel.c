@@ -42,11 +42,15 @@ static tobi_status refuse(tobi_flood *f, const tobi_world *w, const tobi_region 
                           tobi_error *err)
 {
     const double *lower = w->system[0].box.lower, wish = r->level, base = tobi_flood_height(f, lower);
-    double low[3], high[3], depth = 0;
+    double low[3], high[3], depth = 0, top = 0;
     tobi_bvh_box(f->b->bvh, low, high);
-    for (int a = 0; a < f->dimension; a++) depth += fabs(f->up[a])*(high[a] - low[a]);
-    for (double down = f->d; down <= depth + 2*f->d; down += f->d) {
-        f->level = wish - base - down;
+    for (int a = 0; a < f->dimension; a++) {
+        depth += fabs(f->up[a])*(high[a] - low[a]);
+        top += fmax(f->up[a]*low[a], f->up[a]*high[a]);
+    }
+    top = fmin(wish - base, top + 2*f->d);
+    for (double down = f->d; down <= depth + 4*f->d; down += f->d) {
+        f->level = top - down;
         tobi_flood_find_compartments(f);
         const int found = choose(f, r, lower);
         if (found < 0) continue;

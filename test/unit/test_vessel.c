@@ -345,6 +345,7 @@ static void test_mistakes(void **state)
     (void)state;
     refuse(cup, "{ \"vessel\": \"cup\", \"level\": 1.4 }", "",
            "the level of fill[0] is 1.4 m, and vessel 'cup' holds liquid up to");
+    refuse(cup, "{ \"vessel\": \"cup\", \"level\": 9 }", "", "and vessel 'cup' holds liquid up to 1 m only");
     refuse(holed, "{ \"vessel\": \"cup\", \"level\": 0.7 }", "",
            "runs out over a rim or through a hole near (");
     refuse(cup, "{ \"vessel\": \"cup\", \"level\": -1 }", "", "finds nothing to fill in vessel 'cup'");
