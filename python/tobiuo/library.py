@@ -1,6 +1,7 @@
 """The shared library, its declarations, and what turns its values into Python's."""
 import os
 import pathlib
+import re
 
 import cffi
 import numpy as np
@@ -62,18 +63,24 @@ def free_pointer(pointer):
     _libc.free(pointer)
 
 
-def raise_error(status, error):
+def drop_places(text):
+    """A dict has no lines and columns: its mistakes begin with the key."""
+    return re.sub(r"(?m)^[^\n]*?:1:\d+: ", "", text)
+
+
+def raise_error(status, error, of_dict=False):
     said = text_of(error.text).replace("--force", "force=True")      # the option of the program
+    said = drop_places(said) if of_dict else said
     raise Error(said or text_of(lib.tobi_status_text(status)),
                 text_of(lib.tobi_status_text(status)), text_of(error.key))
 
 
-def call(function, *arguments):
+def call(function, *arguments, of_dict=False):
     """Calls a function whose last argument is a tobi_error; raises Error if it fails."""
     error = ffi.new("tobi_error *")
     status = function(*arguments, error)
     if status != lib.TOBI_OK:
-        raise_error(status, error)
+        raise_error(status, error, of_dict)
 
 
 def set_language(name):

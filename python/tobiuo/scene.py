@@ -3,7 +3,7 @@ import json
 import math
 import os
 
-from .library import Error, call, ffi, lib, raise_error, take_text, text_of
+from .library import Error, call, drop_places, ffi, lib, raise_error, take_text, text_of
 
 
 def _plain(value):
@@ -64,15 +64,20 @@ def _read(scene, values, name):
     return status, out[0], report[0], error
 
 
+def _take_lines(report, scene):
+    lines = [text_of(lib.tobi_report_line(report, k)) for k in range(lib.tobi_report_count(report))]
+    lib.tobi_report_free(report)
+    return [drop_places(line) for line in lines] if isinstance(scene, dict) else lines
+
+
 def load(scene, values=None, name=None):
     """A tobi_scene that the caller owns."""
     status, out, report, error = _read(scene, values, name)
-    lines = [text_of(lib.tobi_report_line(report, k)) for k in range(lib.tobi_report_count(report))]
-    lib.tobi_report_free(report)
+    lines = _take_lines(report, scene)
     if status != lib.TOBI_OK:
         if lines:
             error.text = "\n".join(lines).encode()[:2047].decode(errors="ignore").encode()
-        raise_error(status, error)
+        raise_error(status, error, isinstance(scene, dict))
     return out
 
 
@@ -83,8 +88,7 @@ def check(scene, set=None, name=None):
     as of World. name: the path that a text or dict would have: relative paths are looked up beside it.
     """
     status, out, report, error = _read(scene, set, name)
-    lines = [text_of(lib.tobi_report_line(report, k)) for k in range(lib.tobi_report_count(report))]
-    lib.tobi_report_free(report)
+    lines = _take_lines(report, scene)
     if status == lib.TOBI_OK:
         lib.tobi_scene_free(out)
         return []
@@ -101,11 +105,11 @@ def shipped(name="."):
     return take_text(lib.tobi_scene_shipped(name.encode()))
 
 
-def build(scene):
+def build(scene, of_dict=False):
     """The world of a scene, owned by the caller; the scene is freed if there is none."""
     world = ffi.new("tobi_world **")
     try:
-        call(lib.tobi_scene_build, scene, world)
+        call(lib.tobi_scene_build, scene, world, of_dict=of_dict)
     except Error:
         lib.tobi_scene_free(scene)
         raise

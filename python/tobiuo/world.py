@@ -116,9 +116,9 @@ class World:
     _busy = False
 
     def __init__(self, scene, set=None, name=None):
-        self._raised, self._motions = None, {}
+        self._raised, self._motions, self._of_dict = None, {}, isinstance(scene, dict)
         self._scene = scenes.load(scene, set, name)
-        self._handle = scenes.build(self._scene)
+        self._handle = scenes.build(self._scene, self._of_dict)
         self._made_nests = ffi.new("tobi_nests **")
         self._call(lambda w, error: lib.tobi_nests_create(self._scene, w, self._made_nests, error))
         # Asked between two iterations: there Python looks for Ctrl-C.
@@ -211,7 +211,7 @@ class World:
             raise raised
         if status != lib.TOBI_OK:
             lib.tobi_scene_place_error(self._scene, error)
-            raise_error(status, error)
+            raise_error(status, error, self._of_dict)
 
     def _ask(self, function, *arguments):
         """The same of calls without a text."""
@@ -424,7 +424,7 @@ class Nest(World):
 
     def __init__(self, outer, name, handle):
         self._outer, self._name, self._nest = outer, name, handle
-        self._scene, self._raised = outer._scene, None
+        self._scene, self._raised, self._of_dict = outer._scene, None, outer._of_dict
 
     nests = _Named([], None)
 

@@ -445,7 +445,12 @@ class Module(unittest.TestCase):
     def test_mistakes_of_scenes_are_told(self):
         lines = tobiuo.check({**POOL, "spacing": -1, "fluids": [{"name": "water", "fill": [], "colour": 1}]})
         self.assertTrue(any("spacing: is -1" in line for line in lines) and any("colour" in line for line in lines))
+        self.assertTrue(lines[0].startswith("spacing: is -1"), lines)              # a dict has no lines
         self.assertEqual(tobiuo.check(POOL), [])
+        self.assertIn("s.json:2:12: spacing: is -1", tobiuo.check('{\n"spacing": -1 }', name="s.json")[-1])
+        with self.assertRaisesRegex(tobiuo.Error, r"\Afluids\[0\].fill\[0\].level: fluid 'water': the level"):
+            cup = {"name": "cup", "box": {"min": [0.1, 0.1], "max": [0.2, 0.2]}, "vessel": True, "open_side": [0, 1]}
+            tobiuo.World({**POOL, "bodies": [cup], "fluids": [{"name": "water", "fill": [{"vessel": "cup", "level": 1}]}]}).start()
         arrays = {**POOL, "domain": {k: np.array(v) for k, v in POOL["domain"].items()}}
         self.assertEqual(tobiuo.check(arrays, set={"spacing": np.float32(POOL["spacing"]), "end_time": np.int64(1)}), [])
         with self.assertRaisesRegex(TypeError, "nothing that a scene holds"):
