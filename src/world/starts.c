@@ -16,6 +16,8 @@ static const double JERK = 0.05;
 static const double SOUND_LEAST = 3;
 /* s, over which a motion is looked at. */
 static const double SOON = 1e-4;
+/* Spacings: a layer of friction of so many is computed, thinner ones are as good as none. */
+static const double LAYER = 2;
 /* Spacings between liquid and wall that count as a gap, not as a place of its own. */
 static const double GAP_LEAST = 0.6, GAP_MOST = 4;
 
@@ -109,6 +111,42 @@ static tobi_status note_compression(tobi_world *w, tobi_error *err)
     return tobi_world_add_notes(w, "fluid", s->fluid[0].name, text, err);
 }
 
+/* Whether no side and no body holds the liquid at its surface. */
+static int is_slip_everywhere(const tobi_world *w)
+{
+    const tobi_world_def *d = &w->sim.def;
+    int sides = 0, slip = 1;
+    for (int a = 0; a < d->dimension; a++) {
+        if (d->wall_min[a] == TOBI_WALL_PERIODIC) continue;
+        slip &= d->wall_min[a] != TOBI_WALL_NO_SLIP && d->wall_max[a] != TOBI_WALL_NO_SLIP;
+        sides += 2;
+    }
+    for (int k = 0; k < w->sim.body_count; k++) slip &= w->sim.bodies[k].friction == TOBI_SLIP;
+    return slip && sides + w->sim.body_count > 0;
+}
+
+/* A layer of friction that no wall makes, but would grow wide enough to be seen: sqrt(nu t) at a plate that
+   is moved at once (Stokes). */
+static tobi_status note_slip(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    double thickest = 0;
+    char text[TOBI_NOTE];
+    int most = 0;
+    if (s->method->solids || !is_slip_everywhere(w)) return TOBI_OK;
+    for (int f = 0; f < s->fluid_count; f++) {
+        const double nu = s->fluid[f].viscosity/s->fluid[f].density;
+        if (nu > thickest) most = f;
+        thickest = fmax(thickest, nu);
+    }
+    const double layer = sqrt(thickest*w->sim.def.end_time);
+    if (!(layer > LAYER*s->smoothing.spacing)) return TOBI_OK;
+    snprintf(text, sizeof text, tr("slips along all sides and bodies, as by default. One that held it would "
+             "drag a layer of %.2g m along until the end: \"no-slip\" in domain.walls, and friction of "
+             "bodies\n"), layer);
+    return tobi_world_add_notes(w, "fluid", s->fluid[most].name, text, err);
+}
+
 /* With p = 0 at the particles that a rule calls surface, one that comes or goes changes the pressure of all
    below it; with loss they do so by and by. */
 static tobi_status note_rough_surface(tobi_world *w, tobi_error *err)
@@ -177,6 +215,7 @@ tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err)
     for (int k = 0; k < w->sim.body_count; k++)
         TOBI_TRY(tobi_at_key(err, note_jerk(w, &w->sim.bodies[k], err), "bodies[%d].motion", k));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(note_gap(w, &w->regions[k], err));
+    TOBI_TRY(note_slip(w, err));
     TOBI_TRY(note_contact_angles(w, err));
     TOBI_TRY(note_rough_surface(w, err));
     return note_compression(w, err);

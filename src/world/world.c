@@ -180,8 +180,9 @@ static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_erro
             const double x = b->vertex[i][a], slack = 1e-9*w->sim.def.spacing;
             if (box->periodic[a] || (x >= -slack && x <= box->size[a] + slack)) continue;
             return tobi_fail(err, TOBI_INVALID, "body '%s' sticks out of the domain: a vertex%s is at %c = "
-                             "%g m, allowed is %g to %g m", b->name, b->vessel ? tr(" of its walls") : "",
-                             "xyz"[a], x + box->lower[a], box->lower[a], box->lower[a] + box->size[a]);
+                             "%g m, allowed is %g to %g m", b->name,
+                             b->vessel ? tr(" of its walls (outside of a mesh of its inside)") : "", "xyz"[a],
+                             x + box->lower[a], box->lower[a], box->lower[a] + box->size[a]);
         }
     return tobi_at_key(err, tobi_world_check_stroke(w, b, err), "motion");
 }

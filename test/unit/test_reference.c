@@ -269,6 +269,30 @@ static void restless_starts_are_told(void **state)
     tobi_world_destroy(world);
 }
 
+/* A layer that grows to half a spacing, one of three, and that beside a wall that holds it. */
+static void thick_liquids_that_slip_everywhere_are_told(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 3; kind++) {
+        tobi_world_def def = tobi_default_world_def();
+        tobi_fluid_def fluid = tobi_default_fluid_def();
+        tobi_fill_def fill = tobi_default_fill_def();
+        tobi_world *world;
+        def.dimension = 2;
+        def.spacing = 0.02;
+        def.end_time = 1;
+        for (int a = 0; a < 2; a++) def.domain_max[a] = fill.box_max[a] = 0.2;
+        if (kind == 2) def.wall_min[1] = TOBI_WALL_NO_SLIP;
+        fluid.viscosity = kind == 0 ? 0.1 : 3.6;
+        OK(tobi_world_create(&def, NULL, &world, &err));
+        OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+        OK(tobi_world_start(world, &err));
+        assert_int_equal(count_notes(world, "a layer of 0.06 m along"), kind == 1);
+        assert_int_equal(count_notes(world, "slips along all sides and bodies"), kind == 1);
+        tobi_world_destroy(world);
+    }
+}
+
 /* Without gravity nothing falls, and the walls of a vessel are no sides of the domain. */
 static void gaps_that_nothing_falls_into_are_not_told(void **state)
 {
@@ -513,6 +537,7 @@ int main(void)
         cmocka_unit_test(a_void_behind_a_body_is_no_surface),
         cmocka_unit_test(water_in_gaps_presses),
         cmocka_unit_test(restless_starts_are_told),
+        cmocka_unit_test(thick_liquids_that_slip_everywhere_are_told),
         cmocka_unit_test(compression_is_told),
         cmocka_unit_test(angles_without_tension_are_told),
         cmocka_unit_test(the_dry_feels_no_water),
