@@ -307,16 +307,16 @@ static void drive_range(const void *view, int64_t begin, int64_t end)
     for (int64_t i = begin; i < end; i++) {
         const tobi_opening *o = opening_of(s, i);
         if (!o) continue;
-        if (o->outlet) follow(s, o, i, none);
         if (goes_on(o)) set_normal(o, &s->particles.velocity[i], find_column_speed(s, o, i));
+        else if (o->outlet) follow(s, o, i, none);
         if (o->outlet) continue;
         f->accel[i] = (tobi_float4){ 0, 0, 0, 0 };
         s->particles.velocity[i] = (tobi_float4){ f->held[i].x, f->held[i].y, f->held[i].z, 0 };
     }
 }
 
-/* Where liquid goes on, it comes in along the normal. Its columns stay even without a shift; in dfsph that
-   corrects the density as well. */
+/* Where liquid goes on, it goes along the normal alone: a parallel flow neither crowds nor becomes sparse,
+   and needs no shift; in dfsph that corrects the density as well. */
 static void gain_range(const void *view, int64_t begin, int64_t end)
 {
     const driving *d = view;
@@ -327,46 +327,10 @@ static void gain_range(const void *view, int64_t begin, int64_t end)
         if (!o || !goes_on(o)) continue;
         tobi_float4 *v = &s->particles.velocity[i];
         const double out = take_normal(o, v) + d->gain[o - s->sim->openings];
-        if (out < 0) *v = (tobi_float4){ 0, 0, 0, 0 };
+        *v = (tobi_float4){ 0, 0, 0, 0 };
         set_normal(o, v, out);
         if (sph_of(s)->mirrors) f->accel[i] = (tobi_float4){ 0, 0, 0, 0 };
     }
-}
-
-void sph_openings_mark(tobi_system *s, sph_view *v)
-{
-    const int64_t n = s->particles.count;
-    driving d = { .s = s };
-    if (!sph_has_openings(s)) return;
-    for (int k = 0; k < s->sim->opening_count; k++)
-        for (int a = 0; a < 4; a++)
-            (&sph_of(s)->normal[k].x)[a] = a < 3 ? (float)s->sim->openings[k].normal[a]
-                                                 : (float)goes_on(&s->sim->openings[k]);
-    tobi_loop(s->sim->exec.threads, n, 0, mark_range, s);
-    sph_nest_mark(s);
-    find_inflows(s, d.in);
-    tobi_loop(s->sim->exec.threads, n, 512, extend_range, &d);
-    sph_openings_continue(s, CONTINUE);
-    sph_of(s)->marked = 1;
-    v->held = sph_fields_of(&s->particles)->held;
-    sph_openings_hold(s);
-}
-
-void sph_openings_hold(tobi_system *s)
-{
-    if (sph_has_openings(s) && sph_of(s)->marked)
-        tobi_loop(s->sim->exec.threads, s->particles.count, 512, hold_range, s);
-    if (sph_of(s)->marked && !sph_of(s)->mirrors) sph_nest_hold(s);
-}
-
-void sph_openings_drive(tobi_system *s)
-{
-    driving d = { .s = s };
-    if (!sph_has_openings(s) || !sph_of(s)->marked) return;
-    tobi_loop(s->sim->exec.threads, s->particles.count, 512, drive_range, s);
-    find_gains(s, d.gain);
-    tobi_loop(s->sim->exec.threads, s->particles.count, 512, gain_range, &d);
-    sph_nest_hold(s);
 }
 
 /* m, before its plane. */
@@ -417,8 +381,44 @@ static void slope_range(const void *view, int64_t begin, int64_t end)
 
 void sph_openings_slope(tobi_system *s)
 {
-    if (sph_has_openings(s) && sph_of(s)->marked && sph_of(s)->mirrors)
-        tobi_loop(s->sim->exec.threads, s->particles.count, 512, slope_range, s);
+    if (sph_has_openings(s)) tobi_loop(s->sim->exec.threads, s->particles.count, 512, slope_range, s);
+}
+
+void sph_openings_mark(tobi_system *s, sph_view *v)
+{
+    const int64_t n = s->particles.count;
+    driving d = { .s = s };
+    if (!sph_has_openings(s)) return;
+    for (int k = 0; k < s->sim->opening_count; k++)
+        for (int a = 0; a < 4; a++)
+            (&sph_of(s)->normal[k].x)[a] = a < 3 ? (float)s->sim->openings[k].normal[a]
+                                                 : (float)goes_on(&s->sim->openings[k]);
+    tobi_loop(s->sim->exec.threads, n, 0, mark_range, s);
+    sph_nest_mark(s);
+    find_inflows(s, d.in);
+    tobi_loop(s->sim->exec.threads, n, 512, extend_range, &d);
+    if (!sph_of(s)->mirrors) sph_openings_slope(s);         /* isph knows that in its rows */
+    sph_openings_continue(s, CONTINUE);
+    sph_of(s)->marked = 1;
+    v->held = sph_fields_of(&s->particles)->held;
+    sph_openings_hold(s);
+}
+
+void sph_openings_hold(tobi_system *s)
+{
+    if (sph_has_openings(s) && sph_of(s)->marked)
+        tobi_loop(s->sim->exec.threads, s->particles.count, 512, hold_range, s);
+    if (sph_of(s)->marked && !sph_of(s)->mirrors) sph_nest_hold(s);
+}
+
+void sph_openings_drive(tobi_system *s)
+{
+    driving d = { .s = s };
+    if (!sph_has_openings(s) || !sph_of(s)->marked) return;
+    tobi_loop(s->sim->exec.threads, s->particles.count, 512, drive_range, s);
+    find_gains(s, d.gain);
+    tobi_loop(s->sim->exec.threads, s->particles.count, 512, gain_range, &d);
+    sph_nest_hold(s);
 }
 
 double sph_openings_stretch(const tobi_system *s, int64_t i, int64_t held, double *still)

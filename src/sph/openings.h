@@ -12,7 +12,8 @@ int sph_has_openings(const tobi_system *s);
 void sph_openings_mark(tobi_system *s, sph_view *v);
 /* Pressures of inlets go on by `share` to those of the free liquid beside them; in the records too. */
 void sph_openings_continue(tobi_system *s, double share);
-/* The same of outlets that give a pressure: from their plane on it changes along the normal as before it. */
+/* The same of outlets that give a pressure, after which it goes on along the normal as it changes before the
+   plane. Once for each time that it is given. */
 void sph_openings_slope(tobi_system *s);
 /* How much farther beyond the plane of an outlet that gives a pressure a held particle is than i is before
    it: 0 where there is none. still: Pa, of liquid at rest, how much more i has than the held one. */
