@@ -54,7 +54,7 @@ const picture_row plot_history[] = {
         { TEXT("force"), "N", 0, 1, 0, 0, 1, XYZ("wall_force") },
         { TEXT("force along gravity / weight"), "", 0, 0, 0, 0, 1,
           { { TEXT("1 = at rest"), "wall_force_ratio", NULL, CURVE_LINE, 0, NULL, NULL } } } } },
-    { "incompressibility", TEXT("How incompressible the fluid stays"), 0, {
+    { "incompressibility", TEXT("How incompressible the fluid stays"), 1, {
         { TEXT("density error"), "%", 100, 0, 1, 0, 0,
           { { TEXT("largest"), "density_error_max", NULL, CURVE_LINE, 1, "density_error_max", NULL },
             { TEXT("mean"), "density_error_mean", NULL, CURVE_LINE, 0, "density_error_mean", NULL } } },

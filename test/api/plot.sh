@@ -192,6 +192,7 @@ expect 0 "no values for the picture" plot made
 check "the sum of energies" has made/plots/energies.svg "sum of all"
 check "has the elastic one" grep -qx "1 -0.5" made/plots/plots.gnuplot
 check "and no picture of contact" test -z "$(find made/plots -name '*contact*')"
+check "nothing is said of a liquid that is not there" test -z "$("$program" plot made 2>&1 | grep incompressible)"
 printf 'time,name,mean_contact_force_x,contact_force_x,mean_contact_force_z,contact_force_z\n' > made/bodies.csv
 printf '%s,box,0,0,9.8,10\n' 0 1 >> made/bodies.csv
 expect 0 "no values for the picture" plot made
