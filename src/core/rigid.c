@@ -139,6 +139,13 @@ static tobi_status set_locks(tobi_rigid *r, const tobi_body_def *def, int dimens
         return tobi_fail(err, TOBI_INVALID,
                          "body '%s': locked has '%s'; allowed are x, y, z, turn_x, turn_y, turn_z, shift "
                          "(all three) and turn (all three)", def->name ? def->name : "", unknown);
+    /* "shift" and "turn" have them */
+    const int flat = ((r->locked & ALL_SHIFTS) == ALL_SHIFTS ? 0 : 4) |
+                     ((r->locked & ALL_TURNS) == ALL_TURNS ? 0 : 8 | 16);
+    if (dimension == 2 && r->locked & flat)
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s': locked is '%s', and in 2-D there "
+                                          "are x, y and turn_z; shift and turn are all of them",
+                                          def->name ? def->name : "", def->locked), "locked");
     if (dimension == 2) r->locked |= 4 | 8 | 16;
     int turns = r->locked & ALL_TURNS;
     if (turns == 8 || turns == 16 || turns == 32)

@@ -187,6 +187,9 @@ static void test_mistakes(void **state)
     refuse(&def, "locked has 'roll'");
     def.locked = "turn_y";
     refuse(&def, "about one axis is locked");
+    def.locked = "z,turn";
+    assert_int_equal(tobi_rigid_init(&plate, &def, &rest, centre, 2, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "locked is 'z,turn', and in 2-D there are x, y and turn_z"));
     def.locked = "x,turn_x,turn_z";
     def.velocity[0] = 1.5;
     refuse(&def, "cannot start with that velocity: what is locked stays at rest");
