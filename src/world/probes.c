@@ -71,8 +71,9 @@ static tobi_status check_patch(const tobi_world *w, const tobi_probe_def *def, t
         const double lower = box->lower[a], upper = box->lower[a] + box->size[a];
         if (low >= lower - slack && high <= upper + slack) continue;
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "probe '%s': the patch reaches from %.6g to "
-                                          "%.6g m in %c, the domain from %.6g to %.6g m", def->name, low,
-                                          high, "xyz"[a], lower, upper), "length");
+                                          "%.6g m in %c, the domain from %.6g to %.6g m; its length is along "
+                                          "(%g, %g, %g)", def->name, low, high, "xyz"[a], lower, upper,
+                                          axis[0][0], axis[0][1], axis[0][2]), "length");
     }
     return TOBI_OK;
 }

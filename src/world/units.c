@@ -135,6 +135,32 @@ static tobi_status note_jets(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+/* A gel whose stiffness stands in kPa is a puddle. */
+static tobi_status note_solids(tobi_world *w, const tobi_system *s, double g, tobi_error *err)
+{
+    for (int m = 0; m < s->solid_count; m++) {
+        const tobi_solid_def *def = &s->solids[m].def;
+        double low = INFINITY, high = -INFINITY;
+        char text[TOBI_NOTE];
+        if (def->model != TOBI_NEO_HOOKEAN && def->model != TOBI_COROTATED && def->model != TOBI_VON_MISES)
+            continue;
+        for (int64_t i = 0; i < s->particles.count; i++) {
+            if (s->particles.fluid[i] != m) continue;
+            const double x[3] = { s->particles.position[i].x, s->particles.position[i].y,
+                                  s->particles.position[i].z };
+            const double height = -vec3_dot(w->sim.def.gravity, x)/g;
+            low = fmin(low, height);
+            high = fmax(high, height);
+        }
+        const double weight = def->density*g*(high - low);
+        if (!(weight > def->youngs_modulus)) continue;
+        snprintf(text, sizeof text, tr("its own weight presses with %.3g Pa, more than its youngs_modulus of "
+                 "%.3g Pa: are that in Pa and its density in kg/m3?\n"), weight, def->youngs_modulus);
+        TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[m].name, text, err));
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_note_units(tobi_world *w, tobi_error *err)
 {
     const double g = vec3_length(w->sim.def.gravity);
@@ -142,6 +168,7 @@ tobi_status tobi_world_note_units(tobi_world *w, tobi_error *err)
     TOBI_TRY(note_up(w, g, err));
     TOBI_TRY(note_jets(w, err));
     TOBI_TRY(note_inertia(w, err));
+    for (int k = 0; k < w->system_count && g > 0; k++) TOBI_TRY(note_solids(w, &w->system[k], g, err));
     if (w->system[0].fluid_count == 0) return TOBI_OK;
     TOBI_TRY(note_gas(w, err));
     TOBI_TRY(note_bodies(w, err));
