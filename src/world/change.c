@@ -97,6 +97,10 @@ tobi_status tobi_world_set_body_force(tobi_world *w, int body, const double forc
             return tobi_fail(err, TOBI_INVALID, "body '%s': the force is (%g, %g, %g) N, the torque "
                              "(%g, %g, %g) N m; allowed are numbers from %g to %g", b->name, force[0],
                              force[1], force[2], torque[0], torque[1], torque[2], -most, most);
+    if (w->sim.def.dimension == 2 && (force[2] != 0 || torque[0] != 0 || torque[1] != 0))
+        return tobi_fail(err, TOBI_INVALID, "body '%s': the force is %g N in z, the torque (%g, %g) N m "
+                         "about x and y; in a 2-D world these must be 0", b->name, force[2], torque[0],
+                         torque[1]);
     TOBI_TRY(tobi_world_check_whole(w, err));
     if (w->dynamics) {
         tobi_rigid_set_force(w->dynamics, body, force, torque);

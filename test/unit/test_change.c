@@ -281,6 +281,9 @@ static void bodies_feel_it(void **state)
     assert_true(fabs(b.position[1] - a.position[1] - 1e-3*a.velocity[1]) < 1e-14);
     OK(tobi_world_set_body_force(world, 0, (double[3]){ 3*b.mass, 0, 0 }, (double[3]){ 0, 0, b.inertia[8] },
                                  &err));
+    REFUSED(tobi_world_set_body_force(world, 0, (double[3]){ 0, 0, -9 }, (double[3]){ 0 }, &err),
+            TOBI_INVALID,
+            "body 'left': the force is -9 N in z, the torque (0, 0) N m about x and y; in a 2-D world");
     OK(tobi_world_step(world, 1e-3, NULL, &err));
     OK(tobi_world_body(world, 0, &a));
     assert_true(fabs(a.velocity[0] - 3e-3) < 1e-15 && fabs(a.angular_velocity[2] - 1e-3) < 1e-12);
