@@ -299,20 +299,64 @@ static void take_bodies(tobi_drawing *d)
     d->picture.mesh_count = count;
 }
 
+/* Whether a particle's value has a colour of the scale. */
+static int is_scaled(const tobi_drawing *d, int64_t i)
+{
+    return isfinite(d->values[i]) && !(d->own && d->own[i][0] >= 0) && view_is_in_nest(&d->picture, i);
+}
+
+/* Of the values within a range. */
+static void find_extremes(const tobi_drawing *d, double from, double to, double *low, double *high)
+{
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (int64_t i = 0; i < d->count; i++) {
+        if (!is_scaled(d, i) || !(d->values[i] >= from && d->values[i] <= to)) continue;
+        *low = fmin(*low, d->values[i]);
+        *high = fmax(*high, d->values[i]);
+    }
+}
+
+/* Narrows a range by strays, at most one in STRAYS of the values at each end, if it then is less than half as
+   wide: a drop that hits a wall has a hundred times the pressure of the tank. Where nearly all values are one
+   the others are no strays, and the range stays. */
+static void leave_out_strays(const tobi_drawing *d, double *low, double *high)
+{
+    enum { BINS = 4096, STRAYS = 500, ROUNDS = 12 };
+    double from = *low, to = *high;
+    for (int round = 0; round < ROUNDS; round++) {
+        int64_t count[BINS] = { 0 }, below = 0, above = 0, all = 0;
+        const double width = (to - from)/BINS;
+        int first = 0, last = BINS - 1;
+        if (!(width > 0)) return;
+        for (int64_t i = 0; i < d->count; i++) {
+            if (!is_scaled(d, i)) continue;
+            const double bin = (d->values[i] - from)/width;
+            if (bin < 0) below++;
+            else if (bin > BINS) above++;
+            else count[bin < BINS ? (int)bin : BINS - 1]++;
+            all++;
+        }
+        while (first < last && (below += count[first]) <= all/STRAYS) first++;
+        while (last > first && (above += count[last]) <= all/STRAYS) last--;
+        if (2*(last + 1 - first) > BINS) {
+            if (round > 0) find_extremes(d, from, to, low, high);
+            return;
+        }
+        to = from + (last + 1)*width;
+        from += first*width;
+    }
+}
+
 /* Range and label of the colours of a field, or of the speed. */
 static void set_range(tobi_drawing *d)
 {
     const char *name = d->view->field ? d->view->field : "speed";
     double low = d->view->min, high = d->view->max;
     if (!(low < high)) {
-        low = INFINITY, high = -INFINITY;
-        for (int64_t i = 0; i < d->count; i++) {
-            if (!isfinite(d->values[i]) || (d->own && d->own[i][0] >= 0)) continue;
-            if (!view_is_in_nest(&d->picture, i)) continue;
-            low = fmin(low, d->values[i]);
-            high = fmax(high, d->values[i]);
-        }
+        find_extremes(d, -INFINITY, INFINITY, &low, &high);
         if (!(low <= high)) low = high = 0;
+        leave_out_strays(d, &low, &high);
         const char *map = tobi_color_map_name(d->view->map);
         const int parts = low < 0 && high > 0 && map && strcmp(map, "coolwarm") == 0;     /* at its middle */
         if (parts || is_turn(d->looks, name)) high = fmax(fabs(low), fabs(high)), low = -high;

@@ -397,6 +397,46 @@ static void a_component_has_its_sign(void **state)
     memset(speed, 0, sizeof speed);
 }
 
+/* The range of 2000 values, 0 to 1 but for `strays` of them. */
+static void find_range(int strays, double stray, double other, double range[2])
+{
+    enum { MANY = 2000 };
+    static double values[3*MANY], many[MANY], places[MANY][3];
+    tobi_moment_field of[2] = { { field_name, 1, many }, { velocity_name, 3, values } };
+    tobi_view_def view = plain_view();
+    tobi_moment m = moment;
+    tobi_drawing *d;
+    m.fields = of;
+    m.count = MANY;
+    m.positions = places;
+    view.field = "velocity_z";
+    for (int i = 0; i < MANY; i++)
+        values[3*i + 2] = i%(MANY/2) < strays ? (i < MANY/2 ? stray : other) : i/(MANY - 1.0);
+    assert_int_equal(tobi_drawing_make(&looks, &m, &view, &d, NULL), TOBI_OK);
+    range[0] = tobi_drawing_picture(d)->value_min;
+    range[1] = tobi_drawing_picture(d)->value_max;
+    tobi_drawing_free(d);
+}
+
+/* Few values far off do not take the colours from the rest; many do, and few that are next to the rest. */
+static void strays_do_not_stretch_the_colours(void **state)
+{
+    (void)state;
+    static const struct { int strays; double at, other, low, high; } cases[] = {
+        { 2, 100, 100, 0.001, 1 }, { 2, -1e30, 1e30, 0.001, 1 }, { 2, 50, 1e6, 0.001, 1 },
+        { 10, 100, 100, 0.005, 100 }, { 2, 1.5, 1.5, 0.001, 1.5 }
+    };
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        double range[2];
+        find_range(cases[k].strays, cases[k].at, cases[k].other, range);
+        assert_float_equal(range[0], cases[k].low, 1e-3*cases[k].high);
+        assert_float_equal(range[1], cases[k].high, 2e-3*cases[k].high);
+    }
+    double range[2];
+    find_range(998, 0, 0, range);                   /* all the same but four: these have a colour too */
+    assert_true(range[0] == 0 && range[1] == 1);
+}
+
 static void names_of_components(void **state)
 {
     (void)state;
@@ -467,7 +507,8 @@ int main(void)
         cmocka_unit_test(fields_of_one_kind), cmocka_unit_test(isolines_of_one_kind),
         cmocka_unit_test(bodies_have_colors_of_their_own),
         cmocka_unit_test(tracks_are_read), cmocka_unit_test(vorticity_has_a_sign_in_the_plane),
-        cmocka_unit_test(a_component_has_its_sign), cmocka_unit_test(names_of_components),
+        cmocka_unit_test(a_component_has_its_sign),
+        cmocka_unit_test(strays_do_not_stretch_the_colours), cmocka_unit_test(names_of_components),
         cmocka_unit_test(faces_of_pale_solids_stay_pale), cmocka_unit_test(wrong_calls_are_refused)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
