@@ -20,7 +20,7 @@ static const double LIMIT = 60;
 static const double LIMIT = 6;
 #endif
 
-enum { MANY = SANITIZED ? 30000 : 300000 };
+enum { MANY = SANITIZED ? 10000 : 300000 };
 
 typedef void (*part_fn)(FILE *out, int i);
 
