@@ -9,8 +9,9 @@ import tempfile
 PHYSICS = pathlib.Path(__file__).resolve().parents[1] / "physics"
 TREE = {
     "src/world/methods.def": "METHOD(dfsph)\nMETHOD(mlsmpm)\n",
-    "test/golden/hashes.csv": "scene,state,files,added\ndam,aa,1,0\nblock,bb,2,0\n",
+    "test/golden/hashes.csv": "scene,state,files,added\ndam,aa,1,0\npipe,gg,1,0\nblock,bb,2,0\n",
     "test/golden/dam.json": "{}",
+    "test/golden/pipe.json": '{ "outlets": [] }',
     "test/golden/block.json": '{ "method": "mlsmpm" }',
     "test/physics/coarse.csv": "case,figure\n",
     "test/physics/meanings.csv": 'case,meaning\nwave,"Waves are {period, deviation|-%} % too short."\n',
@@ -91,6 +92,8 @@ def check_age(root):
     expect("nothing to do", tool(root, "list")[0].strip().startswith("0 of 1 pages"))
     change(root, "docs/validation/wave.md", " cores. Of", " cores.\nOf")      # a longer name of the machine
     expect("a line ends behind the machine", tool(root, "list")[0].strip().startswith("0 of 1 pages"))
+    change(root, "test/golden/hashes.csv", "gg", "hh")
+    expect("results of a part that the case has not", tool(root, "list")[0].strip().startswith("0 of 1 pages"))
     change(root, "test/golden/hashes.csv", "bb", "cc")
     expect("results of another method", tool(root, "list")[0].strip().startswith("0 of 1 pages"))
     (root / "test/golden/later.json").write_text("{}")
@@ -114,6 +117,12 @@ def check_age(root):
     change(root, "test/physics/wave/run.py", '"Wave"', '"Waves"')
     tool(root, "mark")
     expect("a case that changed", "\n> **This page is older than its case.**\n" in read(root))
+    (root / "test/physics/wave/scene.json").write_text('{ "outlets": [] }')
+    make(root)
+    expect("made anew with an outlet", "older" not in read(root))
+    change(root, "test/golden/hashes.csv", "hh", "gg")
+    tool(root, "mark")
+    expect("results of a part that it has", "\n> **This page is older than its method dfsph.**\n" in read(root))
 
 
 def check_meanings(root):

@@ -9,7 +9,7 @@ usage: validation.py list     cases to be made anew, a line each; on stderr how 
 
 A page records two kinds of stamps. Case: the files of test/physics/CASE and of the folders that its run.py names.
 Method: the state hashes of the golden scenes of that method (test/golden), which change exactly when its
-results do. A scene that came after the page says nothing about it. Drawback: a change that no golden scene
+results do. A scene that came after the page, or with PARTS that the case has not, says nothing about it. Drawback: a change that no golden scene
 sees is not seen here either (decision 47).
 """
 import csv
@@ -22,6 +22,8 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MADE = re.compile(r"^Made by commit (\S+?)(?:, program (\w+), in ([\d.]+) min)? on (.*?)\.\s(.*?)\n\n", re.M | re.S)
+# Parts of a scene whose code no other scene runs.
+PARTS = ("inlets", "joints", "nests", "outlets", "porous_zones", "scalars", "solids")
 STAMPS = re.compile(r"(case|method \w+) ([0-9a-f]{12})")
 OLDER = re.compile(r"^> \*\*.*\n(?:> .*\n)*\n", re.M)
 ROW = re.compile(r"^\| (?!figure )(.*) \| (.*) \| (.*) \| (met|\*\*missed\*\*|stated) \|$", re.M)
@@ -69,25 +71,39 @@ class Tree:
         """A name that a method has too is a folder only in a path: it mostly means the method."""
         return re.search(rf"""{'/ "' if name in self.methods else '["/]'}{name}["/]""", text)
 
-    def case_stamp(self, case):
+    def case_files(self, case):
         folder = self.root / "test/physics" / case
         text = (folder / "run.py").read_text()
         named = [other for home in ("test/physics", "scenes") for other in sorted((self.root / home).glob("*"))
                  if other.is_dir() and other != folder and self.names_folder(text, other.name)]
-        files = [path for place in [folder, *named] for path in sorted(place.rglob("*"))
-                 if path.is_file() and path.suffix not in (".md", ".png", ".pyc")]
-        return digest(part for path in files for part in (path.name.encode(), path.read_bytes()))
+        return [path for place in [folder, *named] for path in sorted(place.rglob("*"))
+                if path.is_file() and path.suffix not in (".md", ".png", ".pyc")]
+
+    def case_stamp(self, case):
+        return digest(part for path in self.case_files(case) for part in (path.name.encode(), path.read_bytes()))
+
+    def case_words(self, case):
+        """Words of its sources, and of the modules beside the cases that it imports."""
+        texts = [path.read_text(errors="ignore") for path in self.case_files(case)]
+        for path in sorted((self.root / "test/physics").glob("*.py")):
+            if path.stem not in ("harness", "plots", "validation") and any(f"from {path.stem} import" in t for t in texts):
+                texts.append(path.read_text())
+        return set(re.findall(r"\w+", " ".join(texts)))
 
     def read_text(self, case):
         """What the page says before its table; no part of a stamp."""
         return fill((self.root / "test/physics" / case / "page.md").read_text())
 
-    def method_stamps(self, method):
+    def method_stamps(self, method, case):
         """The stamp that a page made now gets, then those of the times when there were fewer scenes. Scenes without
-        "method" are of the first one."""
-        rows = []
+        "method" are of the first one. A scene with PARTS counts for cases that have one of them."""
+        rows, words = [], self.case_words(case)
         for path in sorted((self.root / "test/golden").glob("*.json")):
-            named = re.search(r'"method": "(\w+)"', path.read_text())
+            text = path.read_text()
+            named = re.search(r'"method": "(\w+)"', text)
+            parts = {part for part in PARTS if f'"{part}"' in text}
+            if parts and not parts & words:
+                continue
             if (named.group(1) if named else self.methods[0]) == method:
                 row = self.golden.get(path.stem, {"state": None, "added": 0})
                 rows.append((int(row["added"]), f"{path.stem} {row['state']}".encode()))
@@ -96,7 +112,7 @@ class Tree:
     def stamps(self, case, methods):
         """Of a case that ran these methods; one that ran none judges the kernels of all."""
         found = {"case": self.case_stamp(case)}
-        found.update({f"method {m}": self.method_stamps(m)[0] for m in sorted(methods) or self.methods})
+        found.update({f"method {m}": self.method_stamps(m, case)[0] for m in sorted(methods) or self.methods})
         return found
 
     def now(self, case, name):
@@ -104,7 +120,7 @@ class Tree:
         if name == "case":
             return [self.case_stamp(case)]
         method = name.split()[1]
-        return self.method_stamps(method) if method in self.methods else []
+        return self.method_stamps(method, case) if method in self.methods else []
 
 
 class Page:

@@ -10,7 +10,8 @@
 #include <string.h>
 
 static const char *const methods[] = { "dfsph", "wcsph", "isph", "eisph" };
-enum { METHODS = SANITIZED ? 2 : sizeof methods/sizeof *methods, EXACT = 2 };      /* the first keep momentum by themselves */
+enum { METHODS = SANITIZED ? 2 : sizeof methods/sizeof *methods };
+enum { EXACT = 2 };                                /* the first, which keep momentum by themselves */
 
 /* A scene owns its motions, so it outlives its world. */
 static tobi_scene *scene;
