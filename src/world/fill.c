@@ -52,11 +52,21 @@ static int meets(const tobi_system *s, const tobi_body *b, const double x[3], do
     return tobi_bvh_inside(b->bvh, x) || (reach > 0 && tobi_bvh_closest(b->bvh, x, reach, &hit));
 }
 
+/* A place of the lattice on a side of a body, as round numbers give it, is in the body on its lower sides and
+   out of it on the upper ones: rounding would choose for each place anew, and the body have a ragged gap. */
+static void step_aside(const tobi_system *s, double x[3])
+{
+    static const double way[3] = { 1e-6, 0.8e-6, 0.6e-6 };
+    for (int a = 0; a < s->box.dimension; a++) x[a] += way[a]*s->smoothing.spacing;
+}
+
 /* A solid fills the bodies that hold it. Counts its points that a blade would start in: that may be thinner
    than their distance. */
-static int inside_body(const tobi_system *s, tobi_region *r, const double x[3])
+static int inside_body(const tobi_system *s, tobi_region *r, const double place[3])
 {
+    double x[3] = { place[0], place[1], place[2] };
     int inside = 0;
+    step_aside(s, x);
     for (int k = 0; k < s->sim->body_count; k++) {
         const tobi_body *b = &s->sim->bodies[k];
         if (s->solid_count > 0 && tobi_solid_is_clamped(&s->solids[r->owner], k)) continue;

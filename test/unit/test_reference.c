@@ -269,6 +269,33 @@ static void restless_starts_are_told(void **state)
     tobi_world_destroy(world);
 }
 
+/* Sides of the body go through places of the lattice, or beside them: its volume is cut out either way. */
+static void places_on_a_body_are_not_cut_raggedly(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 8; kind++) {
+        tobi_world_def def = tobi_default_world_def();
+        tobi_fluid_def fluid = tobi_default_fluid_def();
+        tobi_fill_def fill = tobi_default_fill_def();
+        tobi_body_def box = tobi_default_body_def();
+        tobi_world *world;
+        def.dimension = 2;
+        def.spacing = 0.02;
+        for (int a = 0; a < 2; a++) def.domain_max[a] = fill.box_max[a] = 0.6;
+        box.name = "box";
+        for (int a = 0; a < 2; a++) {
+            box.box_min[a] = 0.25 + 0.02*(kind%4) + (a ? 1e-3*(kind/4) : 0);
+            box.box_max[a] = box.box_min[a] + 0.12;
+        }
+        OK(tobi_world_create(&def, NULL, &world, &err));
+        OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+        OK(tobi_world_add_body(world, &box, &err));
+        OK(tobi_world_start(world, &err));
+        assert_int_equal(tobi_world_info(world)->fluid_particles, 30*30 - 6*6);
+        tobi_world_destroy(world);
+    }
+}
+
 /* A layer that grows to half a spacing, one of three, and that beside a wall that holds it. */
 static void thick_liquids_that_slip_everywhere_are_told(void **state)
 {
@@ -537,6 +564,7 @@ int main(void)
         cmocka_unit_test(a_void_behind_a_body_is_no_surface),
         cmocka_unit_test(water_in_gaps_presses),
         cmocka_unit_test(restless_starts_are_told),
+        cmocka_unit_test(places_on_a_body_are_not_cut_raggedly),
         cmocka_unit_test(thick_liquids_that_slip_everywhere_are_told),
         cmocka_unit_test(compression_is_told),
         cmocka_unit_test(angles_without_tension_are_told),
