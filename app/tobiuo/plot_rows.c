@@ -131,7 +131,7 @@ const picture_row plot_solid[] = {
     { "solid_motion", TEXT("Motion of %s"), 0, {
         { TEXT("position"), "m", 0, 0, 0, 0, 0, XYZ("position") },
         { TEXT("velocity"), "m/s", 0, 0, 0, 0, 0, XYZ("velocity") } } },
-    { "liquid_force", TEXT("Force of the liquids on %s"), 0, {
+    { "liquid_force", TEXT("Force of the liquids on %s"), 1, {
         { TEXT("mean force"), "N", 0, 1, 0, 0, 1, XYZ("mean_liquid_force") } } },
     { 0 }
 };

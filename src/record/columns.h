@@ -195,9 +195,12 @@
 /* S(name, unit, value, meaning): solids.csv after time and name, likewise. */
 #define SOLID(S) \
     V3(S, "position", "m", i.centre, "Centre of mass.") \
-    V3(S, "velocity", "m/s", i.velocity, "Of the centre of mass.") \
+    V3(S, "velocity", "m/s", i.velocity, "Of the centre of mass.")
+/* Beside fluids. */
+#define SOLID_LIQUID(S) \
     V3(S, "liquid_force", "N", i.liquid_force, \
-       "Of the fluids on the solid, pressure and friction, in the last step; positive pushes towards +.") \
+       "Of the fluids on the solid, pressure and friction, in the last step; positive pushes towards +; " \
+       "where there are any.") \
     V3(S, "mean_liquid_force", "N", m, \
        "Mean of liquid_force over the time since the last output: the one to plot.")
 

@@ -94,7 +94,8 @@ tobi_status tobi_run_estimate(tobi_world *world, const tobi_output_def *output, 
                       (output->surfaces + output->tractions)*bodies +
                       output->surfaces*tobi_world_line_count(world),
               tables = 1 + (bodies > 0) + (tobi_world_probe_count(world) > 0) +
-                       (tobi_world_line_count(world) > 0) + (tobi_world_joint_count(world) > 0);
+                       (tobi_world_line_count(world) > 0) + (tobi_world_joint_count(world) > 0) +
+                       (tobi_world_solid_count(world) > 0) + (world->sim.porous_count > 0);
     const int search = tobi_world_solid_count(world) > 0 ? PIECES : 0;
     const double taken = (double)particles*(row_bytes(&run, 0) + BUFFER + search) +
                          (double)body_particles*row_bytes(&run, 1);

@@ -93,7 +93,9 @@ enum { BODY_COLUMNS = sizeof body_columns/sizeof *body_columns };
 #undef B
 
 #define S(name, unit, value, doc) { name, NULL },
-static const tobi_csv_column solid_columns[] = { { "time", NULL }, { "name", NULL }, SOLID(S) };
+static const tobi_csv_column solid_columns[] = {
+    { "time", NULL }, { "name", NULL }, SOLID(S) SOLID_LIQUID(S) };
+enum { SOLID_COLUMNS = sizeof solid_columns/sizeof *solid_columns };
 #undef S
 
 #define H(name, unit, kind, value, doc) { name, unit, doc },
@@ -107,7 +109,8 @@ static const tobi_column body[] = {
 #undef B
 #define S(name, unit, value, doc) { name, unit, doc },
 static const tobi_column solid[] = {
-    { "time", "s", "Simulated time." }, { "name", "text", "Name of the solid." }, SOLID(S) };
+    { "time", "s", "Simulated time." }, { "name", "text", "Name of the solid." }, SOLID(S)
+    SOLID_LIQUID(S) };
 #undef S
 #define P(name, unit, doc) { name, unit, doc },
 static const tobi_column point[] = { POINT(P) }, level[] = { LEVEL(P) }, patch[] = { PATCH(P) },
@@ -199,12 +202,15 @@ static bool has_nests(const tobi_run *run)
     return tobi_world_nest_at(run->world, 0) && run->world->system[0].method->nests > 1 && has_moving(run);
 }
 
+static bool has_liquids(const tobi_run *run) { return run->world->sim.soft.solids != NULL; }
+
 /* The last columns are of worlds that have what they tell. */
 typedef struct of_some { bool (*has)(const tobi_run *run); int columns; } of_some;
 static const of_some history_of_some[] = {
     { has_zones, 1 }, { has_buoyancy, 1 }, { has_air, 1 }, { has_field, 1 }, { has_nests, 1 } };
 static const of_some body_of_some[] = {
     { is_flat, 1 }, { is_solid, 3 }, { has_air, 1 }, { has_field, 1 }, { has_nests, 7 } };
+static const of_some solid_of_some[] = { { has_liquids, 6 } };
 
 static int choose_columns(const tobi_run *run, const tobi_csv_column *all, int count, const of_some *some,
                           int kinds, tobi_csv_column *out)
@@ -221,17 +227,17 @@ static int choose_columns(const tobi_run *run, const tobi_csv_column *all, int c
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
 {
     const double last = continued ? tobi_record_time(run, run->outputs - 1) : 0;
-    tobi_csv_column of_run[HISTORY_COLUMNS], of_bodies[BODY_COLUMNS];
+    tobi_csv_column of_run[HISTORY_COLUMNS], of_bodies[BODY_COLUMNS], of_solids[SOLID_COLUMNS];
     const int of_history = choose_columns(run, history_columns, HISTORY_COLUMNS, history_of_some,
                                           sizeof history_of_some/sizeof *history_of_some, of_run);
     const int each = choose_columns(run, body_columns, BODY_COLUMNS, body_of_some,
                                     sizeof body_of_some/sizeof *body_of_some, of_bodies);
+    const int of_solid = choose_columns(run, solid_columns, SOLID_COLUMNS, solid_of_some, 1, of_solids);
     TOBI_TRY(tobi_table_open(run, "history.csv", continued, last, of_run, of_history, &run->history, err));
     if (tobi_world_body_count(run->world) > 0)
         TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, last, of_bodies, each, &run->bodies, err));
-    if (run->world->sim.soft.solids)
-        TOBI_TRY(tobi_table_open(run, "solids.csv", continued, last, solid_columns,
-                            tables[TOBI_TABLE_SOLIDS].count, &run->solids, err));
+    if (tobi_world_solid_count(run->world) > 0)
+        TOBI_TRY(tobi_table_open(run, "solids.csv", continued, last, of_solids, of_solid, &run->solids, err));
     TOBI_TRY(tobi_lines_open(run, continued, err));
     TOBI_TRY(tobi_joints_open(run, continued, err));
     TOBI_TRY(tobi_porous_open(run, continued, err));
@@ -287,6 +293,7 @@ static tobi_status take_solids(tobi_run *run, tobi_csv_rows *rows, tobi_error *e
         tobi_csv_add_text(run->solids, i.name);
 #define S(name, unit, value, doc) tobi_csv_add_real(run->solids, value);
         SOLID(S)
+        if (has_liquids(run)) { SOLID_LIQUID(S) }
 #undef S
         TOBI_TRY(tobi_csv_take_row(run->solids, rows, err));
     }

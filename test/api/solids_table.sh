@@ -39,6 +39,8 @@ cat > jelly.json <<'END2'
   "solids": [ { "name": "jelly", "youngs_modulus": 1e5, "fill": [ { "box": { "min": [0.1, 0.1], "max": [0.2, 0.2] } } ] } ] }
 END2
 expect 0 "" run jelly.json --out jelly --quiet
-check "no table without fluids" test ! -e jelly/solids.csv
+check "without fluids the place and velocity alone" test "$(head -1 jelly/solids.csv)" = \
+    time,name,position_x,position_y,position_z,velocity_x,velocity_y,velocity_z
+check "it falls" awk -F, 'END { exit !(NR > 2 && $7 < -0.15 && $7 > -0.25 && $4 < 0.15 && $4 > 0.147) }' jelly/solids.csv
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

@@ -95,7 +95,7 @@ static const char head[] =
     "|---|---|---|\n"
     "| `history.csv` | the whole run, a row per output | always |\n"
     "| `bodies.csv` | each body, a row per output and body | with bodies |\n"
-    "| `solids.csv` | each solid, a row per output and solid | with solids beside fluids |\n"
+    "| `solids.csv` | each solid, a row per output and solid | with solids |\n"
     "| `probes.csv` | sensors, a row per step or `output.probe_interval` | with probes |\n"
     "| `lines.csv`, `joints.csv` | lines; joints, hinges and guides; as many rows as `probes.csv` | with "
     "lines; with joints, hinges or guides |\n"
