@@ -347,6 +347,21 @@ static void expect(const char *text, const char *const *overrides, const char *c
 }
 #define EXPECT(text, ...) expect(text, NULL, (const char *const[]){ __VA_ARGS__, NULL })
 
+/* What the old program never read does not keep its scene from running. */
+static void other_keys_are_told(void **state)
+{
+    (void)state;
+    tobi_scene *scene = parse(
+        "{ \"Configuration\": { \"domainEnd\": [1, 1, 1], \"gravitation\": [0, -9.81, 0],\n"
+        "\"particleRadius\": 0.05, \"author\": \"N. N.\" },\n"
+        "\"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 0.5], \"remark\": 1 } ] }");
+    const char *table = tobi_scene_import_table(scene);
+    assert_non_null(strstr(table, "Configuration.author"));
+    assert_non_null(strstr(table, "FluidBlocks[0].remark"));
+    assert_non_null(strstr(table, "not known: the Taichi program passes over it"));
+    tobi_scene_free(scene);
+}
+
 static void mistakes_of_the_configuration(void **state)
 {
     (void)state;
@@ -547,6 +562,7 @@ int main(void)
         cmocka_unit_test(the_clock),
         cmocka_unit_test(the_other_solver),
         cmocka_unit_test(wrapped_comments),
+        cmocka_unit_test(other_keys_are_told),
         cmocka_unit_test(mistakes_of_the_configuration),
         cmocka_unit_test(blocks_of_another_material),
         cmocka_unit_test(mistakes_of_bodies),

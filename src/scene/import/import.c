@@ -188,6 +188,36 @@ uint64_t tobi_import_read(tobi_import *im, const tobi_old_section *section, json
     return given;
 }
 
+/* Without the keys that the section does not have. */
+static json_t *take_known(tobi_import *im, const tobi_old_section *section, json_t *object)
+{
+    if (!json_is_object(object)) return json_incref(object);
+    json_t *known = json_object();
+    for (const tobi_old_key *k = section->keys; k->param.key; k++) {
+        json_t *value = json_object_get(object, k->param.key);
+        if (value) tobi_import_set(im, known, k->param.key, json_incref(value));
+    }
+    return known;
+}
+
+uint64_t tobi_import_read_taichi(tobi_import *im, const tobi_old_section *section, json_t *object,
+                                 const tobi_place *place, void *def)
+{
+    json_t *known = take_known(im, section, object);
+    const uint64_t given = known ? tobi_import_read(im, section, known, place, def) : 0;
+    im->no_memory |= !known;
+    json_decref(known);
+    return given;
+}
+
+void tobi_import_note_taichi(tobi_import *im, const tobi_old_section *section, json_t *object,
+                             const tobi_place *place, const char *entry, const char *fluid)
+{
+    static const tobi_old_others others = { NULL, TR("not known: the Taichi program passes over it") };
+    tobi_import_note(im, section, object, place, entry, fluid);
+    tobi_import_note_others(im, section, object, place, place, &others);
+}
+
 int tobi_import_has(const tobi_old_section *section, uint64_t given, const char *key)
 {
     for (int i = 0; section->keys[i].param.key; i++)
@@ -355,11 +385,11 @@ static void build_configuration(tobi_import *im)
 static void read_configuration(tobi_import *im)
 {
     json_t *old = json_object_get(im->source->root, "Configuration");
-    im->given = tobi_import_read(im, &tobi_old_configuration, old, &configuration, &im->config);
+    im->given = tobi_import_read_taichi(im, &tobi_old_configuration, old, &configuration, &im->config);
     check_radii(im);
     check_hidden(im, old);
     build_configuration(im);
-    tobi_import_note(im, &tobi_old_configuration, old, &configuration, "", "");
+    tobi_import_note_taichi(im, &tobi_old_configuration, old, &configuration, "", "");
     if (gives(im, "viscosity"))
         tobi_import_remark(im, "viscosity", "kinematic in the old program, so times density; %.4g times "
                            "water, which has 1e-6 m2/s or 0.001 Pa s", im->config.viscosity/1e-6);

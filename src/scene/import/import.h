@@ -101,6 +101,21 @@ int tobi_import_has(const tobi_old_section *section, uint64_t given, const char 
    paths that ".a" and "^a" start from. */
 void tobi_import_note(tobi_import *im, const tobi_old_section *section, json_t *object,
                       const tobi_place *place, const char *entry, const char *fluid);
+/* Keys that an old program passes over: the remark on one of them, NULL if none is known, and that on all
+   others. */
+typedef struct tobi_old_others {
+    const char *(*remark)(const char *key);      /* NULL: no key is known */
+    const char *unknown;
+} tobi_old_others;
+/* Adds a row for each key that the section does not have. A slip of the pen is a mistake instead. place: of
+   the object in its file; shown: in the table. */
+void tobi_import_note_others(tobi_import *im, const tobi_old_section *section, json_t *object,
+                             const tobi_place *place, const tobi_place *shown, const tobi_old_others *others);
+/* The two for objects of the Taichi program, as tobi_import_read and tobi_import_note. */
+uint64_t tobi_import_read_taichi(tobi_import *im, const tobi_old_section *section, json_t *object,
+                                 const tobi_place *place, void *def);
+void tobi_import_note_taichi(tobi_import *im, const tobi_old_section *section, json_t *object,
+                             const tobi_place *place, const char *entry, const char *fluid);
 /* Adds one row: what became of `value` at the key; native: its path in the scene, NULL = nothing. */
 void tobi_import_note_key(tobi_import *im, const tobi_old_key *key, json_t *value, const tobi_place *place,
                           const char *native);

@@ -75,7 +75,7 @@ static void add_fluid_block(tobi_import *im, json_t *fluids, json_t *object, con
 {
     const tobi_old_section *section = &tobi_old_fluid_block;
     tobi_old_block b;
-    uint64_t given = tobi_import_read(im, section, object, place, &b);
+    uint64_t given = tobi_import_read_taichi(im, section, object, place, &b);
     double density = tobi_import_has(section, given, "density") ? b.density : im->config.density;
     json_t *fluid = json_object(), *fill = json_object();
     tobi_import_set(im, fluid, "density", tobi_import_real(density));
@@ -92,7 +92,7 @@ static void add_fluid_block(tobi_import *im, json_t *fluids, json_t *object, con
     snprintf(native[0], sizeof native[0], "fluids[%zu].fill[%zu]", index, json_array_size(fills));
     snprintf(native[1], sizeof native[1], "fluids[%zu]", index);
     im->no_memory |= json_array_append_new(fills, fill) != 0;
-    tobi_import_note(im, section, object, place, native[0], native[1]);
+    tobi_import_note_taichi(im, section, object, place, native[0], native[1]);
 }
 
 void tobi_import_fluids(tobi_import *im)
@@ -178,7 +178,7 @@ static void add_rigid_block(tobi_import *im, json_t *bodies, json_t *object, con
 {
     const tobi_old_section *section = &tobi_old_rigid_block;
     tobi_old_block b;
-    uint64_t given = tobi_import_read(im, section, object, place, &b);
+    uint64_t given = tobi_import_read_taichi(im, section, object, place, &b);
     char name[32], native[64];
     json_t *body = json_object();
     int has_velocity = tobi_import_has(section, given, "velocity");
@@ -191,7 +191,7 @@ static void add_rigid_block(tobi_import *im, json_t *bodies, json_t *object, con
               tobi_import_has(section, given, "color") ? b.color : NULL, b.object);
     snprintf(native, sizeof native, "bodies[%zu]", json_array_size(bodies));
     im->no_memory |= json_array_append_new(bodies, body) != 0;
-    tobi_import_note(im, section, object, place, native, "");
+    tobi_import_note_taichi(im, section, object, place, native, "");
     if (b.dynamic) tell_free(im, has_density, has_velocity);
 }
 
@@ -339,7 +339,7 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
 {
     const tobi_old_section *section = &tobi_old_rigid_body;
     tobi_old_body b;
-    uint64_t given = tobi_import_read(im, section, object, place, &b);
+    uint64_t given = tobi_import_read_taichi(im, section, object, place, &b);
     const char *path = json_string_value(json_object_get(object, "geometryFile")), *remark;
     if (!path || !path[0]) return;               /* told by its table, or empty: told below */
     int fish = check_fish(im, given, place);
@@ -362,7 +362,7 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
     if (b.dynamic) set_free(im, body, has_velocity ? b.velocity : NULL, fish, place);
     snprintf(native, sizeof native, "bodies[%zu]", json_array_size(bodies));
     im->no_memory |= json_array_append_new(bodies, body) != 0;
-    tobi_import_note(im, section, object, place, native, "");
+    tobi_import_note_taichi(im, section, object, place, native, "");
     if (b.dynamic) tell_free(im, tobi_import_has(section, given, "density"), has_velocity);
     if (remark) tobi_import_remark(im, "geometryFile", "%s", tr(remark));
     if (fish) tobi_import_remark(im, "pitchAngle", "nose up. The wings fold by 72 degrees, as the old "

@@ -72,6 +72,28 @@ void tobi_import_note(tobi_import *im, const tobi_old_section *section, json_t *
     }
 }
 
+void tobi_import_note_others(tobi_import *im, const tobi_old_section *section, json_t *object,
+                             const tobi_place *place, const tobi_place *shown, const tobi_old_others *others)
+{
+    enum { KEYS = 64 };
+    const char *known[KEYS], *key;
+    size_t count = 0;
+    json_t *value;
+    for (; section->keys[count].param.key && count < KEYS; count++)
+        known[count] = section->keys[count].param.key;
+    json_object_foreach(object, key, value) {
+        size_t k = 0;
+        while (k < count && strcmp(known[k], key) != 0) k++;
+        if (k < count) continue;
+        const char *remark = others->remark ? others->remark(key) : NULL;
+        const char *near = remark ? NULL : tobi_suggest(key, known, count);
+        tobi_place at = { place, key, 0 };
+        if (near) tobi_source_mistake_at_key(im->source, &at, "unknown key; did you mean \"%s\"?", near);
+        const tobi_old_key row = { .param.key = key, .param.doc = remark ? remark : others->unknown };
+        tobi_import_note_key(im, &row, value, shown, NULL);
+    }
+}
+
 /* The newest row about `key`, NULL if there is none. */
 static tobi_old_row *find_row(tobi_import *im, const char *key)
 {

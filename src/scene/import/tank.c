@@ -40,6 +40,8 @@ typedef struct object {
     const char *objfile;
 } object;
 
+static const tobi_old_others others = { tobi_tank_passed_over,
+                                        TR("not known: the tank program passes over it") };
 static const tobi_place root = { 0 };
 static const tobi_place files = { &root, "input_files", 0 }, longest_step = { &root, "max_dt", 0 };
 
@@ -54,31 +56,6 @@ static json_t *take_bound(tobi_import *im, const tobi_old_section *section, json
         if (value && k->param.unit) tobi_import_set(im, bound, k->param.key, json_incref(value));
     }
     return bound;
-}
-
-/* Keys that the section does not have: a slip of the pen is a mistake, others are told in the table. */
-static void note_others(tobi_import *im, const tobi_old_section *section, json_t *json,
-                        const tobi_place *shown)
-{
-    enum { KEYS = 32 };
-    const char *known[KEYS], *key;
-    size_t count = 0;
-    json_t *value;
-    for (; section->keys[count].param.key && count < KEYS; count++)
-        known[count] = section->keys[count].param.key;
-    json_object_foreach(json, key, value) {
-        size_t k = 0;
-        while (k < count && strcmp(known[k], key) != 0) k++;
-        if (k < count) continue;
-        const char *remark = tobi_tank_passed_over(key);
-        const char *near = remark ? NULL : tobi_suggest(key, known, count);
-        tobi_place at = { &root, key, 0 };
-        if (near) tobi_source_mistake_at_key(im->source, &at, "unknown key; did you mean \"%s\"?", near);
-        const tobi_old_key row = {
-            .param.key = key,
-            .param.doc = remark ? remark : TR("not known: the tank program passes over it") };
-        tobi_import_note_key(im, &row, value, shown, NULL);
-    }
 }
 
 /* --- the setting --------------------------------------------------------------------------- */
@@ -102,7 +79,7 @@ static void read_setting(tank *t)
     t->given = tobi_import_read(im, section, bound, &root, &t->setting);
     json_decref(bound);
     tobi_import_note(im, section, json, &root, "", "");
-    note_others(im, section, json, &root);
+    tobi_import_note_others(im, section, json, &root, &root, &others);
     if (t->setting.end_step > 0 && end_time(t) < t->setting.end_time) {
         tobi_import_remark(im, "end_time_step", "the run ends after so many steps of max_dt, as before: "
                            "that is sooner than end_time");
@@ -268,7 +245,7 @@ static void add_entry(tank *t, object *o, json_t *list, const char *native,
     im->no_memory |= json_array_append(list, entry) != 0;
     im->source = &o->source;
     tobi_import_note(im, &tobi_tank_object_section, o->source.root, &shown, path, "");
-    note_others(im, &tobi_tank_object_section, o->source.root, &shown);
+    tobi_import_note_others(im, &tobi_tank_object_section, o->source.root, &root, &shown, &others);
     im->source = setting;
     im->no_memory |= tobi_source_add_origin(setting, path, &listed) != TOBI_OK;
     add(t, o, entry);
