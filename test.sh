@@ -1,6 +1,6 @@
 #!/bin/bash
 # Installs what is missing, builds the release preset with its tests, runs them.
-# usage: ./test.sh                 all but the long physics cases, about ten minutes with the build on two cores
+# usage: ./test.sh                 all but the long physics cases, about twelve minutes with the build on two cores
 #        ./test.sh --all           these too, twice the time
 #        ./test.sh NAME            only the tests whose name matches (a regular expression), long ones too
 #        ./test.sh --slow [CASE] [--stale] [--reference DIR]
