@@ -1,5 +1,5 @@
-/* How much room inlets and outlets leave: for a free surface, and for more liquid. Drawback: bodies are not
-   taken from the domain, so that what they leave is less. */
+/* How much room inlets and outlets leave: for a free surface, and for more liquid. Drawback: what bodies take
+   of the domain counts for notes alone, where those that reach into each other count twice. */
 #include "world/openings.h"
 #include "base/error.h"
 #include <math.h>
@@ -10,6 +10,17 @@ static double measure_domain(const tobi_system *s)
     double size = 1;
     for (int a = 0; a < s->box.dimension; a++) size *= s->box.size[a];
     return size;
+}
+
+/* What bodies leave of it at the start. */
+static double measure_room(const tobi_system *s)
+{
+    double room = measure_domain(s);
+    for (int k = 0; k < s->sim->body_count; k++) {
+        const tobi_body *b = &s->sim->bodies[k];
+        if (!b->vessel && !b->is_absent) room -= b->rest.volume;
+    }
+    return room;
 }
 
 double tobi_openings_share(const tobi_system *s)
@@ -145,7 +156,7 @@ tobi_status tobi_openings_note(tobi_world *w, tobi_error *err)
     const char *outlet = find_free_outlet(&w->sim);
     char text[TOBI_NOTE];
     if (w->sim.opening_count == 0) return TOBI_OK;
-    if ((double)s->particles.count*s->smoothing.volume < FULL*measure_domain(s)) return TOBI_OK;
+    if ((double)s->particles.count*s->smoothing.volume < FULL*measure_room(s)) return TOBI_OK;
     TOBI_TRY(note_ends(w, err));
     if (s->method->fills_pipes && !outlet) return TOBI_OK;
     if (s->method->fills_pipes)
