@@ -269,26 +269,36 @@ static void restless_starts_are_told(void **state)
     tobi_world_destroy(world);
 }
 
+/* Full of liquid, 2-D, 20 mm from particle to particle, for 1 s. */
+static tobi_world *make_square(double side, int floor, double viscosity)
+{
+    tobi_world_def def = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_world *world;
+    def.dimension = 2;
+    def.spacing = 0.02;
+    def.end_time = 1;
+    def.wall_min[1] = floor;
+    for (int a = 0; a < 2; a++) def.domain_max[a] = fill.box_max[a] = side;
+    fluid.viscosity = viscosity;
+    OK(tobi_world_create(&def, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+    return world;
+}
+
 /* Sides of the body go through places of the lattice, or beside them: its volume is cut out either way. */
 static void places_on_a_body_are_not_cut_raggedly(void **state)
 {
     (void)state;
     for (int kind = 0; kind < 8; kind++) {
-        tobi_world_def def = tobi_default_world_def();
-        tobi_fluid_def fluid = tobi_default_fluid_def();
-        tobi_fill_def fill = tobi_default_fill_def();
         tobi_body_def box = tobi_default_body_def();
-        tobi_world *world;
-        def.dimension = 2;
-        def.spacing = 0.02;
-        for (int a = 0; a < 2; a++) def.domain_max[a] = fill.box_max[a] = 0.6;
+        tobi_world *world = make_square(0.6, TOBI_WALL_SLIP, 1e-3);
         box.name = "box";
         for (int a = 0; a < 2; a++) {
             box.box_min[a] = 0.25 + 0.02*(kind%4) + (a ? 1e-3*(kind/4) : 0);
             box.box_max[a] = box.box_min[a] + 0.12;
         }
-        OK(tobi_world_create(&def, NULL, &world, &err));
-        OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
         OK(tobi_world_add_body(world, &box, &err));
         OK(tobi_world_start(world, &err));
         assert_int_equal(tobi_world_info(world)->fluid_particles, 30*30 - 6*6);
@@ -301,18 +311,8 @@ static void thick_liquids_that_slip_everywhere_are_told(void **state)
 {
     (void)state;
     for (int kind = 0; kind < 3; kind++) {
-        tobi_world_def def = tobi_default_world_def();
-        tobi_fluid_def fluid = tobi_default_fluid_def();
-        tobi_fill_def fill = tobi_default_fill_def();
-        tobi_world *world;
-        def.dimension = 2;
-        def.spacing = 0.02;
-        def.end_time = 1;
-        for (int a = 0; a < 2; a++) def.domain_max[a] = fill.box_max[a] = 0.2;
-        if (kind == 2) def.wall_min[1] = TOBI_WALL_NO_SLIP;
-        fluid.viscosity = kind == 0 ? 0.1 : 3.6;
-        OK(tobi_world_create(&def, NULL, &world, &err));
-        OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+        tobi_world *world = make_square(0.2, kind == 2 ? TOBI_WALL_NO_SLIP : TOBI_WALL_SLIP,
+                                        kind == 0 ? 0.1 : 3.6);
         OK(tobi_world_start(world, &err));
         assert_int_equal(count_notes(world, "a layer of 0.06 m along"), kind == 1);
         assert_int_equal(count_notes(world, "slips along all sides and bodies"), kind == 1);

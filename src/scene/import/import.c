@@ -188,14 +188,13 @@ uint64_t tobi_import_read(tobi_import *im, const tobi_old_section *section, json
     return given;
 }
 
-/* Without the keys that the section does not have. */
-static json_t *take_known(tobi_import *im, const tobi_old_section *section, json_t *object)
+json_t *tobi_import_take_known(tobi_import *im, const tobi_old_section *section, json_t *object, int lists)
 {
-    if (!json_is_object(object)) return json_incref(object);
+    if (object && !json_is_object(object)) return json_incref(object);
     json_t *known = json_object();
     for (const tobi_old_key *k = section->keys; k->param.key; k++) {
         json_t *value = json_object_get(object, k->param.key);
-        if (value) tobi_import_set(im, known, k->param.key, json_incref(value));
+        if (value && (lists || k->param.unit)) tobi_import_set(im, known, k->param.key, json_incref(value));
     }
     return known;
 }
@@ -203,7 +202,7 @@ static json_t *take_known(tobi_import *im, const tobi_old_section *section, json
 uint64_t tobi_import_read_taichi(tobi_import *im, const tobi_old_section *section, json_t *object,
                                  const tobi_place *place, void *def)
 {
-    json_t *known = take_known(im, section, object);
+    json_t *known = tobi_import_take_known(im, section, object, 1);
     const uint64_t given = known ? tobi_import_read(im, section, known, place, def) : 0;
     im->no_memory |= !known;
     json_decref(known);

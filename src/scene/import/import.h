@@ -95,6 +95,9 @@ json_t *tobi_import_vector(const double v[3]);
 /* Reads an object by its section into def (section->size bytes); returns the keys given. */
 uint64_t tobi_import_read(tobi_import *im, const tobi_old_section *section, json_t *object,
                           const tobi_place *place, void *def);
+/* The object with the keys that the section has alone; lists: 1 = those too that its table does not read. A
+   new reference; what is no object comes as it is, NULL as an object without keys. */
+json_t *tobi_import_take_known(tobi_import *im, const tobi_old_section *section, json_t *object, int lists);
 /* Whether a key of a section is among `given`. */
 int tobi_import_has(const tobi_old_section *section, uint64_t given, const char *key);
 /* Adds a row of the table for each key given and each that is told when absent. entry and fluid: the native

@@ -47,17 +47,6 @@ static const tobi_place files = { &root, "input_files", 0 }, longest_step = { &r
 
 int tobi_import_tank_applies(const json_t *json) { return json_object_get(json, "input_files") != NULL; }
 
-/* The keys that a table binds, in an object of their own. */
-static json_t *take_bound(tobi_import *im, const tobi_old_section *section, json_t *json)
-{
-    json_t *bound = json_object();
-    for (const tobi_old_key *k = section->keys; k->param.key; k++) {
-        json_t *value = json_object_get(json, k->param.key);
-        if (value && k->param.unit) tobi_import_set(im, bound, k->param.key, json_incref(value));
-    }
-    return bound;
-}
-
 /* --- the setting --------------------------------------------------------------------------- */
 
 static double end_time(const tank *t)
@@ -75,7 +64,7 @@ static void read_setting(tank *t)
 {
     tobi_import *im = &t->im;
     const tobi_old_section *section = &tobi_tank_setting_section;
-    json_t *json = im->source->root, *bound = take_bound(im, section, json);
+    json_t *json = im->source->root, *bound = tobi_import_take_known(im, section, json, 0);
     t->given = tobi_import_read(im, section, bound, &root, &t->setting);
     json_decref(bound);
     tobi_import_note(im, section, json, &root, "", "");
@@ -276,7 +265,7 @@ static void read_object(tank *t, object *o)
 {
     tobi_import *im = &t->im;
     tobi_source *setting = im->source;
-    json_t *bound = take_bound(im, &tobi_tank_object_section, o->source.root);
+    json_t *bound = tobi_import_take_known(im, &tobi_tank_object_section, o->source.root, 0);
     im->source = im->binder.source = &o->source;
     o->given = tobi_import_read(im, &tobi_tank_object_section, bound, &root, &o->def);
     im->source = im->binder.source = setting;
