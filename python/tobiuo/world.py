@@ -351,9 +351,14 @@ class World:
     def write(self, field, values):
         """Sets "velocity" or "pressure" of all particles of the fluid, in the order and shape of `read`."""
         n, width = self.count(), _list_fields().get(field, (1, ""))[0]
-        values, shape = np.ascontiguousarray(values, np.float64), (n, width) if width > 1 else (n,)
+        shape = (n, width) if width > 1 else (n,)
+        must = f"must be {shape}, as read({field!r}) gives it"
+        try:
+            values = np.ascontiguousarray(values, np.float64)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"{field}: {type(values).__name__} is no array of numbers, {must}") from error
         if values.shape != shape:
-            raise ValueError(f"{field}: an array of {values.shape}, must be {shape}, as read({field!r}) gives it")
+            raise ValueError(f"{field}: an array of {values.shape}, {must}")
         self._call(lib.tobi_world_write, field.encode(), ffi.from_buffer("double[]", values), len(values))
 
     def pieces(self):

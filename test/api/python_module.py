@@ -325,6 +325,7 @@ class Module(unittest.TestCase):
             for wrong, text in ((lambda: world.write("velocity", velocity[1:]), r"\(599, 3\), must be \(600, 3\)"),
                                 (lambda: world.write("velocity", velocity[:, :2]), r"must be \(600, 3\)"),
                                 (lambda: world.write("pressure", velocity), r"must be \(600,\), as read"),
+                                (lambda: world.write("pressure", "x"), r"pressure: str is no array of numbers, must be \(600,"),
                                 (lambda: world.read("position", of="air"), "fluid, bodies"),
                                 (lambda: world.set_gravity([1]), r"\[1\], must be 2 or 3 numbers"),
                                 (lambda: world.set_gravity(-9.81), "gravity: is -9.81, must be 2 or 3 numbers")):
