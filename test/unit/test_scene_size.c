@@ -103,22 +103,29 @@ static void unknown_fields(void **state)
         fail_msg("%s", line);
 }
 
+/* One above the other. */
 static void put_block(FILE *out, int i)
 {
-    (void)i;
-    fprintf(out, "{ \"start\": [0, 0, 0], \"end\": [1, 1, 0.5], \"a\": 1, \"b\": 2 }");
+    fprintf(out, "{ \"start\": [0, 0, %d], \"end\": [1, 1, %d], \"a\": 1, \"b\": 2 }", i, i + 1);
 }
 
-static const char old_head[] = "{ \"Configuration\": { \"domainEnd\": [1, 1, 1], \"particleRadius\": 0.05,"
+static void put_wrong_block(FILE *out, int i)
+{
+    (void)i;
+    fprintf(out, "{ \"start\": [0, 0, 0], \"end\": [1, 1, 0.5], \"density\": \"heavy\" }");
+}
+
+static const char old_head[] = "{ \"Configuration\": { \"domainEnd\": [1, 1, 256], \"particleRadius\": 0.05,"
                                " \"gravitation\": [0, 0, -9.81] }, \"FluidBlocks\": [\n";
 
 static void blocks_of_old_scenes(void **state)
 {
     (void)state;
     const char *line = read_text("o.json", write_text(old_head, 100000, ",\n", put_block, "] }"), 0);
-    assert_string_equal(line, "o.json:1:117: FluidBlocks: has 100000 entries, allowed are 2048");
-    line = read_text("o.json", write_text(old_head, 2000, ",\n", put_block, "] }"), 199);
-    if (!strstr(line, "o.json:101:51: FluidBlocks[99].b: unknown key")) fail_msg("%s", line);
+    assert_string_equal(line, "o.json:1:119: FluidBlocks: has 100000 entries, allowed are 2048");
+    assert_string_equal(read_text("o.json", write_text(old_head, 256, ",\n", put_block, "] }"), 0), "");
+    line = read_text("o.json", write_text(old_head, 2000, ",\n", put_wrong_block, "] }"), 199);
+    if (!strstr(line, "o.json:201:54: FluidBlocks[199].density: ")) fail_msg("%s", line);
 }
 
 /* Side by side in y and z, all over the same x. */
