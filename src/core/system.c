@@ -14,6 +14,13 @@ void tobi_account_add(tobi_account *a, const char *name, int64_t bytes)
     a->bytes[k] += bytes;
 }
 
+int tobi_system_memory(tobi_system *s, double **values)
+{
+    if (s->method->memory) return s->method->memory(s, values);
+    *values = &s->info.speed_max;
+    return 1;
+}
+
 /* totals: kinetic, potential, momentum x y z, mass. Potential against the box's lower corner. */
 static void measure_range(const void *view, int64_t begin, int64_t end, double *t)
 {

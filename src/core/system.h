@@ -125,8 +125,9 @@ typedef struct tobi_method {
     int rough_forces;                            /* 1: of a liquid on bodies and on solids they are not the
                                                     opposite of what the liquid feels, to a few per cent */
     /* Smoothing kernel and support radius that the parameters ask for; driven: something is moved in a
-       vessel full of liquid. */
+       vessel full of liquid. NULL: it has no kernel. */
     void (*smoothing)(const void *def, int driven, int *shape, double *support);
+    /* Its state. NULL: it has none. */
     tobi_status (*create)(tobi_system *s, tobi_error *err);
     /* Optional: the method's own state fields of a new particle. */
     void (*place)(tobi_system *s, int64_t i, const tobi_start *start);
@@ -154,7 +155,8 @@ typedef struct tobi_method {
     /* Brings outputs, lists and walls up to the present positions. NULL:
        nothing is kept that could be stale. */
     tobi_status (*refresh)(tobi_system *s, tobi_error *err);
-    /* One of `outputs`, of one particle, after a refresh; changes nothing. */
+    /* One of `outputs`, of one particle, after a refresh; changes nothing. NULL: they are numbers in state
+       fields of these names. */
     void (*read)(const tobi_system *s, const char *field, int64_t i, double *out);
     /* Refuses, in words, a solid that it cannot compute at this spacing, or leaves a note for the user; NULL:
        it takes all. Before `create`, as is the next. */
@@ -173,7 +175,7 @@ typedef struct tobi_method {
     /* Prepares an output that is derived, after a refresh; NULL where none is. */
     void (*derive)(tobi_system *s, const char *field);
     /* Doubles that must survive a restart besides the particles, TOBI_MEMORY_LIMIT at most; the first is the
-       largest speed, m/s. */
+       largest speed, m/s. NULL: that of `info` alone. Called by tobi_system_memory. */
     int (*memory)(tobi_system *s, double **values);
     /* Optional, the same of a size that changes: rows of TOBI_RESTORED_ROW numbers, the caller's to free. */
     tobi_status (*keep)(const tobi_system *s, double **rows, int64_t *count, tobi_error *err);
@@ -192,6 +194,8 @@ typedef struct tobi_method {
     void (*free)(void *state);
 } tobi_method;
 
+/* The method's `memory`: how many doubles, where. */
+int tobi_system_memory(tobi_system *s, double **values);
 /* Whether its fluids differ in density or viscosity, or an interface has tension. */
 int tobi_system_is_mixed(const tobi_system *s);
 /* Least and largest density of its fluids, kg/m3; it has one at least. */

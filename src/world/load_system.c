@@ -44,7 +44,7 @@ static tobi_status put_clock(const tobi_system *s, int number, tobi_store *f, to
 tobi_status tobi_system_put(tobi_system *s, int number, tobi_store *f, tobi_error *err)
 {
     double *memory;
-    const int n = s->method->memory(s, &memory);
+    const int n = tobi_system_memory(s, &memory);
     TOBI_TRY(tobi_store_put_text(f, name_entry(number, "method").name, s->method->name, err));
     TOBI_TRY(tobi_store_put_real(f, name_entry(number, "spacing").name, s->smoothing.spacing, err));
     TOBI_TRY(put_clock(s, number, f, err));
@@ -105,7 +105,7 @@ static tobi_status read_memory(tobi_system *s, int number, tobi_store *f, const 
                                tobi_loaded_system *l, tobi_error *err)
 {
     double *memory;
-    l->memory_count = s->method->memory(s, &memory);
+    l->memory_count = tobi_system_memory(s, &memory);
     l->memory = malloc((size_t)(l->memory_count + 1)*sizeof *l->memory);
     if (!l->memory) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", path);
     TOBI_TRY(tobi_store_get(f, name_entry(number, "info").name, TOBI_U8, (int64_t)sizeof l->info, 1, &l->info,
@@ -268,7 +268,7 @@ void tobi_system_take(tobi_system *s, const tobi_loaded_system *l)
     s->particles.count = l->count;
     s->particles.next_id = l->next_id;
     if (s->first_id + l->next_id > s->sim->next_id) s->sim->next_id = s->first_id + l->next_id;
-    s->method->memory(s, &memory);
+    tobi_system_memory(s, &memory);
     memcpy(memory, l->memory, (size_t)l->memory_count*sizeof *memory);
     s->info = l->info;
     s->step = l->step;

@@ -275,6 +275,28 @@ static const tobi_output *find_in_world(const tobi_world *w, const char *name)
     return NULL;
 }
 
+/* The array of a method's state field and the bytes of its rows; NULL and 0 without. */
+static void *find_state(const tobi_particles *p, const char *name, size_t *bytes)
+{
+    void *data;
+    const tobi_field *f;
+    for (int k = 0; (f = tobi_particles_state(p, k, &data)) && strcmp(f->name, name) != 0;) k++;
+    *bytes = f ? f->bytes : 0;
+    return data;
+}
+
+/* An output that is a state field of floats or doubles; 0 if there is none. */
+static void read_state(const tobi_system *s, const tobi_output *output, int64_t i, double *out)
+{
+    size_t bytes;
+    const void *data = find_state(&s->particles, output->name, &bytes);
+    for (int c = 0; c < output->components; c++) {
+        const int64_t k = i*output->components + c;
+        const int is_float = bytes == (size_t)output->components*sizeof(float);
+        out[c] = !data ? 0 : is_float ? ((const float *)data)[k] : ((const double *)data)[k];
+    }
+}
+
 /* Of a world that has diverged nothing is refreshed, because neighbours may be anywhere: what a refresh makes
    is not there. */
 static int is_stale(const tobi_world *w, const tobi_system *s)
@@ -292,6 +314,7 @@ static void read_particle(const tobi_world *w, const tobi_system *s, const tobi_
     else if (!strcmp(f->name, "piece")) out[0] = w->pieces.of[i];
     else if (!strcmp(f->name, "texture_coordinates")) read_texture(w, s, i, out);
     else if (read_plain(s, f->name, i, out)) return;
+    else if (!s->method->read) read_state(s, f, i, out);
     else if (!is_stale(w, s)) s->method->read(s, f->name, i, out);
     else for (int c = 0; c < f->components; c++) out[c] = NAN;
 }
@@ -399,18 +422,8 @@ static void write_velocity(tobi_system *s, const double *v)
         s->particles.velocity[s->row_of[r]] = (tobi_float4){(float)v[0], (float)v[1], (float)v[2], 0};
         fastest = fmax(fastest, v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
     }
-    s->method->memory(s, &memory);
+    tobi_system_memory(s, &memory);
     memory[0] = s->start_speed = sqrt(fastest);
-}
-
-/* The array of a method's state field, NULL without. */
-static void *find_state(const tobi_particles *p, const char *name, size_t *bytes)
-{
-    void *data;
-    const tobi_field *f;
-    for (int k = 0; (f = tobi_particles_state(p, k, &data)) && strcmp(f->name, name) != 0;) k++;
-    *bytes = f ? f->bytes : 0;
-    return data;
 }
 
 static void write_pressure(tobi_system *s, const double *pressure)

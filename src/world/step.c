@@ -298,7 +298,7 @@ static void keep_memory(tobi_world *w, kept *keep)
 {
     double *memory;
     for (int k = 0; k < w->system_count; k++) {
-        const int n = w->system[k].method->memory(&w->system[k], &memory);
+        const int n = tobi_system_memory(&w->system[k], &memory);
         assert(n <= TOBI_MEMORY_LIMIT);
         memcpy(keep->memory[k], memory, (size_t)n*sizeof *memory);
     }
@@ -310,7 +310,7 @@ static void put_back(tobi_world *w, const kept *keep)
 {
     double *memory;
     for (int k = 0; k < w->system_count; k++) {
-        const int n = w->system[k].method->memory(&w->system[k], &memory);
+        const int n = tobi_system_memory(&w->system[k], &memory);
         memcpy(memory, keep->memory[k], (size_t)n*sizeof *memory);
         w->system[k].dt = keep->dt;
     }

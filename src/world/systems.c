@@ -66,9 +66,9 @@ static int is_stirred_vessel(const tobi_world *w, const tobi_system *s)
 static void set_smoothing(tobi_world *w, tobi_system *s)
 {
     const tobi_world_def *d = &w->sim.def;
-    int shape, periodic[3];
-    double support;
-    s->method->smoothing(s->def, is_stirred_vessel(w, s), &shape, &support);
+    int shape = 0, periodic[3];
+    double support = 2;
+    if (s->method->smoothing) s->method->smoothing(s->def, is_stirred_vessel(w, s), &shape, &support);
     const double common = tobi_fit_find(w, d->spacing).spacing;
     const double spacing = s->method->solids ? mpm_spacing(s->def, common) : common;
     if (s->smoothing.h == support*spacing) return;
@@ -325,8 +325,8 @@ tobi_status tobi_world_start_system(tobi_world *w, tobi_system *s, tobi_error *e
     if (!s->method->solids)
         TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, &s->particles, &w->sim.exec, err));
     if (!s->method->packs_lists) tobi_cells_widen(&s->cells);
-    if (!s->state) TOBI_TRY(s->method->create(s, err));
-    s->method->memory(s, &memory);
+    if (s->method->create && !s->state) TOBI_TRY(s->method->create(s, err));
+    tobi_system_memory(s, &memory);
     memory[0] = s->start_speed = tobi_world_start_speed(w, s);
     if (s->start_speed > TOBI_SPEED_LIMIT)
         return tobi_fail(err, TOBI_INVALID, "a region starts with %g m/s, by velocity, spin and flow "

@@ -3,7 +3,6 @@
 #include "base/param_rows.h"
 #include "core/system.h"
 #include <math.h>
-#include <stdlib.h>
 
 typedef struct free_flight_def { double drag; } free_flight_def;
 
@@ -22,24 +21,9 @@ static const tobi_field field[] = { FIELDS(ROW) };
 static const tobi_field_list list = { field, 1, sizeof(fields) };
 static const tobi_output outputs[] = { { "path", 1, "m", 0 }, { NULL, 0, NULL, 0 } };
 
-typedef struct free_flight { double speed; } free_flight;      /* m/s, of the fastest */
-
-static void smoothing(const void *def, int driven, int *shape, double *support)
-{
-    (void)def, (void)driven;
-    *shape = 0;
-    *support = 2;
-}
-
-static tobi_status create(tobi_system *s, tobi_error *err)
-{
-    s->state = calloc(1, sizeof(free_flight));
-    return s->state ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for the method");
-}
-
 static double max_dt(tobi_system *s)
 {
-    return s->sim->def.cfl*s->smoothing.spacing/fmax(((free_flight *)s->state)->speed, 1);
+    return s->sim->def.cfl*s->smoothing.spacing/fmax(s->info.speed_max, 1);
 }
 
 /* From (x, v) to those of the same parabola a step later, then the drag: totals[6] the largest speed. */
@@ -66,22 +50,10 @@ static void move(tobi_system *s)
 {
     double t[TOBI_TOTALS];
     tobi_launch(&s->sim->exec, TOBI_HOST(fly, 0, 1), s, 0, s->particles.count, t);
-    ((free_flight *)s->state)->speed = s->info.speed_max = t[6];
-}
-
-static void read_field(const tobi_system *s, const char *name, int64_t i, double *out)
-{
-    *out = name[1] == 'a' ? ((const fields *)s->particles.own)->path[i] : 0;      /* no pressure, density */
-}
-
-static int memory(tobi_system *s, double **values)
-{
-    *values = &((free_flight *)s->state)->speed;
-    return 1;
+    s->info.speed_max = t[6];
 }
 
 const tobi_method tobi_free_flight = {
     .name = "free_flight", .doc = "Particles that only fall.", .params = &table, .fields = &list,
-    .outputs = outputs, .smoothing = smoothing, .create = create, .max_dt = max_dt, .move = move,
-    .read = read_field, .memory = memory, .free = free,
+    .outputs = outputs, .max_dt = max_dt, .move = move,
 };
