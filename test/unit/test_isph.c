@@ -544,6 +544,33 @@ static void a_closed_pocket_beside_a_pool(void **state)
     tobi_world_destroy(w);
 }
 
+/* A capsule full of water, as heavy as water, in a pool: a uniform pressure in it pushes it by the error of
+   its points only. The solve converged, to pressures of 1e6 Pa, and the third step diverged. */
+static void a_capsule_full_of_water_floats(void **state)
+{
+    static const char text[] =
+        "{ \"method\": \"isph\", \"threads\": 1, \"spacing\": 0.01, \"end_time\": 1,"
+        "\"domain\": { \"min\": [0, 0, 0], \"max\": [0.16, 0.15, 0.15] },"
+        "\"fluids\": [ { \"name\": \"water\","
+        "\"fill\": [ { \"box\": { \"min\": [0, 0, 0], \"max\": [0.16, 0.15, 0.1] } } ] } ],"
+        "\"bodies\": [ { \"name\": \"capsule\", \"vessel\": true, \"wall_thickness\": 0.01,"
+        "\"box\": { \"min\": [0.06, 0.06, 0.05], \"max\": [0.1, 0.1, 0.07] },"
+        "\"dynamics\": \"free\", \"density\": 1000 } ] }";
+    tobi_step_info info;
+    tobi_body_info capsule;
+    tobi_world *w;
+    (void)state;
+    OK(start_scene(text, &w, &err));
+    OK(tobi_world_advance(w, 0.15, &info, &err));
+    OK(tobi_world_body(w, 0, &capsule));
+    const double weight = 9810*(0.06*0.06*0.04 - 0.04*0.04*0.02);
+    print_message("a capsule of %.4g N is pushed by %.4g N, and sank by %.3g mm\n", weight,
+                  capsule.pressure_force[2], 1e3*(0.06 - capsule.position[2]));
+    assert_true(fabs(capsule.position[2] - 0.06) < 0.001);
+    assert_true(fabs(capsule.pressure_force[2] - weight) < 0.05*weight);
+    tobi_world_destroy(w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -563,6 +590,7 @@ int main(void)
         cmocka_unit_test(water_around_a_disc_rests),
         cmocka_unit_test(a_square_in_a_full_vessel),
         cmocka_unit_test(a_closed_pocket_beside_a_pool),
+        cmocka_unit_test(a_capsule_full_of_water_floats),
         cmocka_unit_test(a_pool_rests),
         cmocka_unit_test(a_slosh_stays_clean),
     };

@@ -1,9 +1,13 @@
 /* A closed pocket: rows that no chain of neighbours joins to a free surface. Its pressure is free by a
    constant, so that its sources must add up to nothing, as those of a full vessel do. Sources of liquid that
    is a little too dense do not, and conjugate gradients then run away in the constant. So the mean of each
-   pocket is taken out of source and pressure. Drawback: a flood over the list on one thread in each step of a
-   world that had a pocket once, and no more than six pockets. */
+   pocket is taken out of source and pressure. A body around a pocket, or in it, gives way to a constant by
+   the error of its quadrature only, which the matrix is not to see. Drawback: a flood over the list on one
+   thread in each step of a world that had a pocket once, and no more than six pockets. */
 #include "sph/isph/pockets.h"
+#include "geom/vec3.h"
+#include "sph/soft.h"
+#include "sph/state.h"
 #include <math.h>
 #include <string.h>
 
@@ -12,6 +16,8 @@ enum { OPEN = 0, POCKETS = TOBI_SUMS, UNKNOWN = 255 };
 
 /* Over the largest row: what the matrix makes of a constant by rounding. */
 static const double ROUNDING = 1e-9;
+/* Over the sum of its pushes: what a uniform pressure makes of a surface that is closed, by few particles. */
+static const double CLOSED = 0.1;
 
 /* From the rows of the queue to all that entries join to them. */
 static void flood(const isph_solver *m, int32_t *queue, int64_t count, uint8_t mark)
@@ -50,14 +56,44 @@ static int mark_rows(isph_solver *m)
     return count;
 }
 
+static int exceeds_rounding(const isph_solver *m, const double *y)
+{
+    double most = 0;
+    for (int64_t i = 0; i < m->view.count; i++) most = fmax(most, fabs(y[i]));
+    return most > ROUNDING*m->view.full;
+}
+
+/* Whether a uniform pressure in a pocket pushes a body that moves by forces: one that it goes all around, or
+   that goes around it, it does not. */
+static int pushes_body(const isph_solver *m, int mark)
+{
+    const tobi_system *s = m->system;
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    for (int b = 0; m->coupled && b < s->sim->body_count; b++) {
+        double force[3] = { 0 }, all = 0;
+        if (s->sim->bodies[b].rigid.kind == TOBI_PRESCRIBED) continue;
+        for (int64_t k = n->first[b]; k < n->first[b + 1]; k++) {
+            const double *push = m->coupling[k].f;
+            if (m->pocket[n->link[k].particle] != mark) continue;
+            for (int a = 0; a < 3; a++) force[a] += push[a];
+            all += sqrt(vec3_dot(push, push));
+        }
+        if (sqrt(vec3_dot(force, force)) > CLOSED*all) return 1;
+    }
+    return 0;
+}
+
 /* Whether the matrix sees a constant in a pocket: a body or solid that moves gives way to it. */
 static int is_seen(isph_solver *m, const tobi_linear_system *system, int mark)
 {
-    double *x = (double *)m->work, *y = m->scratch, most = 0;
+    double *x = (double *)m->work, *y = m->scratch;
     for (int64_t i = 0; i < m->view.count; i++) x[i] = m->pocket[i] == mark;
     system->apply(system->user, y, x);
-    for (int64_t i = 0; i < m->view.count; i++) most = fmax(most, fabs(y[i]));
-    return most > ROUNDING*m->view.full;
+    if (!exceeds_rounding(m, y)) return 0;
+    if (pushes_body(m, mark)) return 1;
+    memset(y, 0, (size_t)m->view.count*sizeof *y);
+    sph_soft_add_answer(m->system, y, x);
+    return exceeds_rounding(m, y);
 }
 
 int isph_pockets_find(isph_solver *m, const tobi_linear_system *system)

@@ -244,16 +244,19 @@ static tobi_linear_report run(isph_solver *m, const tobi_linear_system *a)
     return tobi_cg(m->exec, a, &how, b, x, m->work);
 }
 
-/* A closed pocket is known by a solve that fails, and from then on looked for. */
+/* A closed pocket is known by a solve that fails, and from then on looked for. One in a body that moves by
+   forces lets it converge, to pressures without a meaning: it is looked for at the start. */
 static tobi_linear_report run_with_pockets(isph_solver *m, const tobi_linear_system *a)
 {
+    const int looks = m->pockets || (m->coupled && m->system->step == 0 && !a->singular);
     tobi_linear_system centered = *a;
     tobi_linear_report report = { .status = TOBI_LINEAR_LIMIT };
     centered.center = isph_pockets_center;
-    if (!m->pockets) report = run(m, a);
-    if (report.status == TOBI_LINEAR_CONVERGED || report.status == TOBI_LINEAR_STOPPED || a->singular)
+    if (!looks) report = run(m, a);
+    if (report.status == TOBI_LINEAR_CONVERGED || report.status == TOBI_LINEAR_STOPPED ||
+        (a->singular && !looks))
         return report;
-    const int found = isph_pockets_find(m, a), again = found > 0 || m->pockets;
+    const int found = isph_pockets_find(m, a), again = found > 0 || looks;
     m->pockets |= found > 0;
     return again ? run(m, found > 0 ? &centered : a) : report;
 }
