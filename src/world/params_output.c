@@ -28,7 +28,8 @@ static const tobi_param probe_rows[] = {
       .doc = "Name of the body that it sits on and moves with, from where the scene places the body." },
     { .key = "fluid", TEXT, AT(tobi_probe_def, fluid), .unit = "name",
       .doc = "Name of the fluid that a level, run-up, flow or volume is of, as the water under air or oil; "
-             "else of all fluids together." },
+             "else of all fluids together. A level or run-up counts heavier fluids as well, on which "
+             "this one stands: oil on water has its surface." },
     { .key = "rate", REAL, AT(tobi_probe_def, rate), RANGE(1e-9, 1e12), .unit = "Hz",
       .text = "output", .doc = "Its values per second, each of the first step that is due; output goes by "
                                "output.probe_interval." },

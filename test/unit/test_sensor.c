@@ -508,7 +508,7 @@ static void scenes_tell_the_place(void **state)
 
 static void two_along_x(const double x[3], double *v) { (void)x; v[0] = 2, v[1] = v[2] = 0; }
 
-/* 0.08 m of water, and air up to the lid. */
+/* 0.08 m of water, and air up to the lid. The level of the air, which stands on the water, is the lid. */
 static void a_sensor_is_of_one_fluid(void **state)
 {
     (void)state;
@@ -534,6 +534,9 @@ static void a_sensor_is_of_one_fluid(void **state)
     OK(tobi_world_start(world, &err));
     set_field(world, "velocity", 3, two_along_x);
     const double of_all[] = { 0.2, 0.18, 0.018 }, of_water[] = { 0.08, 0.08, 0.007 };
+    level.name = "p4";
+    level.fluid = "air";
+    assert_close(measure(world, &level).level, of_all[0], 0.1*D, "level of the air");
     for (int only = 0; only < 2; only++) {
         const double *expected = only ? of_water : of_all;
         char names[4][8];

@@ -21,10 +21,17 @@ typedef struct share {
     double sum;
 } share;
 
+/* A fluid stands on heavier ones as on a floor: oil on water has its level. */
+static int is_in_column(const tobi_system *s, int fluid, int64_t i)
+{
+    return tobi_sensor_counts(s, fluid, i) ||
+           s->fluid[s->particles.fluid[i]].density > s->fluid[fluid].density;
+}
+
 static void add_share(void *user, int64_t i, const double d[3])
 {
     share *a = user;
-    if (!tobi_sensor_counts(a->s, a->fluid, i)) return;
+    if (!is_in_column(a->s, a->fluid, i)) return;
     const double r = vec3_length(d);
     if (r < a->c->h) a->sum += tobi_smoothing_w(a->c->shape, a->c->dimension, a->c->h, r);
 }

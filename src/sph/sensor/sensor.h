@@ -15,8 +15,8 @@ static inline int tobi_sensor_counts(const tobi_system *s, int fluid, int64_t i)
 typedef struct tobi_sensor_box { double middle[3], axis[3][3], size[3]; } tobi_sensor_box;
 
 /* Kernel sum of the volumes of the particles around x (world coordinates) over the share that sides and
-   bodies
-   leave open: 0 in the air, 1 in the liquid, 1/2 on a free surface. *inside: 1 in a body. */
+   bodies leave open: 0 in the air, 1 in the liquid, 1/2 on a free surface. *inside: 1 in a body. Here and in
+   columns fluids that are heavier than `fluid` count as well: it stands on them. */
 double tobi_sensor_occupancy(const tobi_system *s, int fluid, const double x[3], int *inside);
 
 /* Distance from `from` along the unit vector `along`, at most `length`, at which the liquid that stands on
