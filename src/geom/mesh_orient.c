@@ -292,12 +292,19 @@ static tobi_status find_overlaps(tobi_mesh *mesh, tobi_error *err)
     return TOBI_OK;
 }
 
-/* Matches edges and makes the triangles of each shell agree, over open edges or not. */
+static tobi_status match_edges(const tobi_mesh *mesh, orient_work *w, tobi_edge_report *report)
+{
+    return tobi_edges_match(mesh->vertex_count, mesh->triangle_count, (const int32_t (*)[3])mesh->triangles,
+                            w->opposite, report);
+}
+
+/* Matches edges and makes the triangles of each shell agree, over open edges or not. Those that are turned
+   have their edges in another order. */
 static tobi_status flood_mesh(tobi_mesh *mesh, orient_work *w, tobi_edge_report *report, tobi_error *err)
 {
+    const int64_t before = w->turned;
     TOBI_TRY(allocate_work(w, mesh->triangle_count));
-    TOBI_TRY(tobi_edges_match(mesh->vertex_count, mesh->triangle_count,
-                              (const int32_t (*)[3])mesh->triangles, w->opposite, report));
+    TOBI_TRY(match_edges(mesh, w, report));
     for (int64_t t = 0; t < mesh->triangle_count; t++) w->turn[t] = -1;
     for (int64_t t = 0; t < mesh->triangle_count; t++) {
         if (w->turn[t] >= 0) continue;
@@ -309,7 +316,7 @@ static tobi_status flood_mesh(tobi_mesh *mesh, orient_work *w, tobi_edge_report 
     }
     for (int64_t t = 0; t < mesh->triangle_count; t++)
         if (w->turn[t]) turn_triangle(mesh->triangles[t]);
-    return TOBI_OK;
+    return w->turned > before ? match_edges(mesh, w, report) : TOBI_OK;
 }
 
 static tobi_status close_holes(tobi_mesh *mesh, orient_work *w, tobi_edge_report *report, tobi_error *err)
@@ -339,8 +346,7 @@ static tobi_status judge_holes(tobi_mesh *mesh, orient_work *w, tobi_error *err)
 static tobi_status orient_mesh(tobi_mesh *mesh, orient_work *w, tobi_error *err)
 {
     tobi_edge_report report = {0};
-    TOBI_TRY(tobi_edges_match(mesh->vertex_count, mesh->triangle_count,
-                              (const int32_t (*)[3])mesh->triangles, w->opposite, &report));
+    TOBI_TRY(match_edges(mesh, w, &report));
     if (report.open || report.non_manifold) TOBI_TRY(tobi_mesh_mend(mesh));
     TOBI_TRY(flood_mesh(mesh, w, &report, err));
     if (w->turned)

@@ -468,9 +468,29 @@ static void odd_sizes_ask_about_units(void **state)
     tobi_mesh_free(&mesh);
 }
 
+/* Each choice of triangles of a cube without its first two is turned: the hole is closed all the same. */
+static void closes_holes_beside_triangles_that_were_turned(void **state)
+{
+    (void)state;
+    for (int choice = 0; choice < 1 << 10; choice += 11) {
+        tobi_mesh mesh = make_cube(1);
+        mesh.triangle_count = 10;
+        for (int t = 0; t < 10; t++) {
+            const int32_t first = mesh.triangles[t + 2][0], other = mesh.triangles[t + 2][1];
+            mesh.triangles[t][0] = choice >> t & 1 ? other : first;
+            mesh.triangles[t][1] = choice >> t & 1 ? first : other;
+            mesh.triangles[t][2] = mesh.triangles[t + 2][2];
+        }
+        OK(tobi_mesh_orient(&mesh, "open cube", &err));
+        NEAR(mesh_volume(&mesh), 8, 1e-14);
+        tobi_mesh_free(&mesh);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(closes_holes_beside_triangles_that_were_turned),
         cmocka_unit_test(a_good_mesh_needs_no_words),
         cmocka_unit_test(flipped_faces_are_turned_and_counted),
         cmocka_unit_test(shells_beside_and_within_each_other),
