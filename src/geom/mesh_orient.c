@@ -254,8 +254,8 @@ static tobi_status turn_shells(tobi_mesh *mesh, orient_work *w, tobi_error *err)
     }
     free(depth);
     if (hollow && w->what != VESSEL)                   /* it is there to be filled */
-        tobi_mesh_note(mesh, tr("%lld of %lld shells lie inside another one and are hollows"),
-                       (long long)hollow, (long long)s->count);
+        tobi_mesh_note(mesh, tr("%lld of %lld shells lie inside another one and are hollows; those of a body "
+                       "are filled by regions that cover it"), (long long)hollow, (long long)s->count);
     if (turned)
         tobi_mesh_note(mesh, tr("%lld of %lld shells turned: the outermost look outwards, hollows inwards"),
                        (long long)turned, (long long)s->count);

@@ -78,7 +78,7 @@ static void shells_beside_and_within_each_other(void **state)
     mesh = join_meshes(make_cube(2), make_cube(1));
     OK(tobi_mesh_orient(&mesh, "hollow", &err));
     has_volume(&mesh, 64 - 8, 1e-14);
-    says(&mesh, "1 of 2 shells lie inside another one and are hollows");
+    says(&mesh, "1 of 2 shells lie inside another one and are hollows; those of a body are filled");
     assert_false(mesh.overlapping);
     tobi_mesh_free(&mesh);
 }
