@@ -7,6 +7,7 @@
 #include "sph/soft.k.h"
 
 struct tobi_system;
+struct tobi_body;
 
 /* Where solids are: boxes of one width around their particles. */
 typedef struct sph_soft_marks {
@@ -68,6 +69,8 @@ void sph_soft_still_sum(struct tobi_system *s, double force[3]);
 tobi_status sph_soft_mark(struct tobi_system *s, tobi_error *err);
 /* Whether a solid is on the line between two places. */
 int sph_soft_meets(const struct tobi_system *s, const double from[3], const double to[3]);
+/* Whether a solid touches a point of a body. */
+int sph_soft_touches(const struct tobi_system *s, const struct tobi_body *b, int64_t point);
 /* Points of bodies that a solid touches count as wet. After sph_soft_find. */
 void sph_soft_wet_bodies(struct tobi_system *s);
 /* Depths below a depth, m, where a solid has air beside it, into `dry`. Returns the largest. */

@@ -197,27 +197,39 @@ static int meets_liquid(const tobi_system *s, const double x[3])
     return nearest < reach*reach;
 }
 
-static int is_near_body(const tobi_system *s, const double x[3])
+static int holds(const tobi_solid *solid, int body)
+{
+    for (int c = 0; c < solid->clamp_count; c++)
+        if (solid->clamp[c] == body) return 1;
+    return 0;
+}
+
+/* The inside of a body that holds the solid does not count: by isph no water presses where it holds it, and
+   still water would press the solid as if it were closed there. */
+static int meets_body(const tobi_system *s, const tobi_solid *solid, const double x[3])
 {
     tobi_bvh_hit hit;
     for (int k = 0; k < s->sim->body_count; k++) {
         const tobi_body *b = &s->sim->bodies[k];
-        if (!b->is_absent && tobi_bvh_closest(b->bvh, x, COVER*s->smoothing.spacing, &hit)) return 1;
+        if (!b->is_absent && (tobi_bvh_closest(b->bvh, x, COVER*s->smoothing.spacing, &hit) ||
+                              (!holds(solid, k) && tobi_bvh_inside(b->bvh, x)))) return 1;
     }
     return 0;
 }
 
-/* What a side or a body is so near to that no liquid fits between is not dry. */
-static int is_dry(const tobi_system *s, const double x[3])
+/* What lies in a body, or so near to one or to a side that no liquid fits between, is not dry. */
+static int is_dry(const tobi_system *s, int64_t point, const double x[3])
 {
+    const tobi_soft *soft = &s->sim->soft;
+    const tobi_solid *solid = &soft->solids->solids[soft->solid[point]];
     const double reach = fmax(LOOK/sph_of(s)->soft.marks.inverse,
-                              COVER*s->smoothing.spacing + 0.5*s->sim->soft.solids->smoothing.spacing);
+                              COVER*s->smoothing.spacing + 0.5*soft->solids->smoothing.spacing);
     for (int way = 0; way < 2*s->box.dimension; way++) {
         const int a = way/2;
         double at[3] = { x[0], x[1], x[2] };
         at[a] += way%2 ? -reach : reach;
         if (!s->box.periodic[a] && (at[a] < 0 || at[a] > s->box.size[a])) continue;
-        if (!meets_solid(s, at) && !meets_liquid(s, at) && !is_near_body(s, at)) return 1;
+        if (!meets_solid(s, at) && !meets_liquid(s, at) && !meets_body(s, solid, at)) return 1;
     }
     return 0;
 }
@@ -232,7 +244,7 @@ static void find_dry(const void *view, int64_t begin, int64_t end, double *total
     for (int64_t b = begin; b < end; b++) {
         const tobi_double3 p = d->s->sim->soft.position[b];
         const double x[3] = { p.x, p.y, p.z }, depth = tobi_reference_depth(&q->still, x);
-        q->dry[b] = depth > d->below && is_dry(d->s, x) ? (float)depth : 0;
+        q->dry[b] = depth > d->below && is_dry(d->s, b, x) ? (float)depth : 0;
         totals[6] = fmax(totals[6], q->dry[b]);
     }
 }
@@ -250,17 +262,19 @@ double sph_soft_find_dry(tobi_system *s, double below)
 
 typedef struct wetting { const tobi_system *s; tobi_body *body; } wetting;
 
+int sph_soft_touches(const tobi_system *s, const tobi_body *b, int64_t point)
+{
+    const double reach = s->sim->soft.solids->smoothing.spacing;
+    double at[3];
+    for (int a = 0; a < 3; a++) at[a] = b->point[point][a] + reach*b->normal[point][a];
+    return meets_solid(s, at);
+}
+
 static void wet_points(const void *view, int64_t begin, int64_t end)
 {
-    const tobi_body *b = ((const wetting *)view)->body;
-    const tobi_system *s = ((const wetting *)view)->s;
-    const double reach = s->sim->soft.solids->smoothing.spacing;
-    for (int64_t k = begin; k < end; k++) {
-        double at[3];
-        if (b->wet[k]) continue;
-        for (int a = 0; a < 3; a++) at[a] = b->point[k][a] + reach*b->normal[k][a];
-        if (meets_solid(s, at)) b->wet[k] = TOBI_WET;
-    }
+    const wetting *w = view;
+    for (int64_t k = begin; k < end; k++)
+        if (!w->body->wet[k] && sph_soft_touches(w->s, w->body, k)) w->body->wet[k] = TOBI_WET;
 }
 
 void sph_soft_wet_bodies(tobi_system *s)

@@ -172,6 +172,30 @@ static void a_held_fin_hides_its_root(void **state)
     }
 }
 
+/* A block lies on a bed under water. The inside of a bed thicker than two spacings counted as air beside the
+   block: then all of the water's pressure held it down. Both are lifted as by Archimedes. */
+static void a_block_on_a_bed_is_lifted(void **state)
+{
+    (void)state;
+    const double bed[4] = { 0.1, 0, 0.5, 0.1 }, block = 1000*GRAVITY*0.15*0.1,
+                 both = 1000*GRAVITY*0.4*0.1 + block - 1900*GRAVITY*0.15*0.1;
+    for (int k = 0; k < METHODS; k++) {
+        const scene s = { methods[k], GRAVITY, { 0, 0, 0.6, 0.5 }, 0, { 0.225, 0.1, 0.375, 0.2 }, 1900, 5e5,
+                          NULL, 1e-3 };
+        tobi_world *world = open_world(&s);
+        double lift = 0;
+        add_body(world, "bed", bed, 0);
+        add_block(world, &s);
+        OK(tobi_world_start(world, &err));
+        const means m = average(world, SANITIZED ? 0.02 : 0.1, SANITIZED ? 0.04 : 0.2);
+        for (int64_t i = 0; i < world->sim.soft.count; i++) lift += world->sim.soft.push[i].y;
+        print_message("%s: the block is lifted by %.2f, both by %.2f of Archimedes\n", methods[k], lift/block,
+                      m.load/both);
+        assert_true(fabs(lift/block - 1) < 0.35 && fabs(m.load/both - 1) < 0.1);
+        tobi_world_destroy(world);
+    }
+}
+
 static double find_height(const tobi_world *world)
 {
     const tobi_particles *p = &tobi_world_solids(world)->particles;
@@ -305,6 +329,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pin_carries_weight_less_buoyancy),
         cmocka_unit_test(a_held_fin_hides_its_root),
+        cmocka_unit_test(a_block_on_a_bed_is_lifted),
         cmocka_unit_test(a_light_plank_bears_a_heavy_block),
         cmocka_unit_test(momentum_is_kept),
         cmocka_unit_test(a_block_far_away_changes_nothing)

@@ -155,8 +155,10 @@ static void weigh_points(const void *view, int64_t begin, int64_t end, double *t
     const tobi_body *b = body_of(q);
     for (int64_t k = begin; k < end; k++) {
         isph_point *p = &q->point[k];
-        const double held = q->holds ? p->held/TOBI_COVERED : 0;
+        const uint32_t hidden = q->holds ? p->held : 0;
+        const double held = hidden/TOBI_COVERED;
         *p = b->area[k] > 0 && b->wet[k] ? sum_particles(q, k) : (isph_point){ 0 };
+        p->held = hidden;
         p->weight = p->weight > 0 && p->weight + 0.5*held > DRY && held < 1 ? p->weight/(1 - held) : INFINITY;
         const double along = tobi_body_point_acceleration(b, k, q->v->dt);
         const double more = p->hydrostatic + q->v->density*p->distance*along;
@@ -294,7 +296,7 @@ tobi_status isph_forces_find_coupling(isph_solver *m, tobi_system *s, tobi_error
     for (q.body = 0; q.body < bodies; q.body++) {
         double t[TOBI_TOTALS] = { 0 };
         q.point = m->point + n->bins[q.body].item;
-        if (n->first[q.body] < n->first[q.body + 1])
+        if (n->first[q.body] < n->first[q.body + 1] || s->sim->soft.solids)
             tobi_launch(m->exec, TOBI_HOST(weigh_points, 6, 0), &q, 0, body_of(&q)->point_count, t);
         isph_gaps_find(m, s, q.body, q.point, t);
         memcpy(m->body[q.body].rest_force, t, sizeof m->body->rest_force);

@@ -2,7 +2,8 @@
    without pressure there the water above would hold it down for ever. A gap has the pressure of the points
    around it, its rim, on average, and that of liquid at rest from there on; a rim that is dry counts with no
    pressure. So the force stays linear in the pressures of the particles, and the equation symmetric.
-   Drawback: a gap has no flow, hence no suction when a body leaves fast. */
+   Soft solids that lie on a body have the pressure of still water between, as they are pressed by it
+   (sph/soft_still.c). Drawback: a gap has no flow, hence no suction when a body leaves fast. */
 #include "sph/isph/gaps.h"
 #include "sph/isph/bodies.h"
 #include "sph/state.h"
@@ -143,4 +144,31 @@ void isph_gaps_add_side(const isph_body *b, const tobi_body *body, const isph_po
     for (int q = 0; q < TOBI_NEAR_KINDS && p->rim; q++)
         if (1 << q != TOBI_NEAR_BODY && p->rim & 1 << q && b->gap[q].rim > 0)
             f[q/2] -= share*body->area[k]/b->gap[q].rim*b->gap[q].push[q/2];
+}
+
+/* totals: the force of still water on points that no particle sees as a soft solid lies there. Where the body
+   holds the solid, none. */
+static void press_touched(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const gap_view *g = view;
+    const tobi_body *b = g->b;
+    for (int64_t k = begin; k < end; k++) {
+        const isph_point *p = &g->point[k];
+        if (!is_dry(p) || p->gap || p->held > 0 || !(b->area[k] > 0) || b->wet[k] == TOBI_BURIED) continue;
+        if (!sph_soft_touches(g->s, b, k)) continue;
+        const double still = tobi_reference_pressure(&sph_of(g->s)->soft.still, b->point[k]);
+        isph_bodies_push(b, k, -b->area[k]*still, totals);
+    }
+}
+
+void isph_gaps_add_still(isph_solver *m, tobi_system *s)
+{
+    if (!s->sim->soft.solids || !(sph_of(s)->soft.still.push > 0)) return;
+    for (int k = 0; k < s->sim->body_count; k++) {
+        const gap_view g = { .s = s, .v = &m->view, .b = &s->sim->bodies[k], .body = k,
+                             .point = m->point + sph_of(s)->links.bins[k].item };
+        double t[TOBI_TOTALS] = { 0 };
+        tobi_launch(m->exec, TOBI_HOST(press_touched, 6, 0), &g, 0, g.b->point_count, t);
+        for (int a = 0; a < 6; a++) m->body[k].rest_force[a] += t[a];
+    }
 }

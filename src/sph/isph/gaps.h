@@ -13,3 +13,6 @@ void isph_gaps_add(const isph_body *b, const tobi_body *body, const isph_point *
    which has the share `share` of it. */
 void isph_gaps_add_side(const isph_body *b, const tobi_body *body, const isph_point *p, int64_t k,
                         double share, double f[3]);
+/* Adds to the rest_force of bodies what still water beside soft solids presses them with where these lie on
+   them. After isph_gaps_find and sph_soft_find_dry. */
+void isph_gaps_add_still(isph_solver *m, tobi_system *s);

@@ -7,6 +7,7 @@
 #include "sph/isph/isph.h"
 #include "sph/isph/fields.h"
 #include "sph/isph/forces.h"
+#include "sph/isph/gaps.h"
 #include "sph/isph/carry.h"
 #include "sph/isph/porous.h"
 #include "sph/porous_carry.h"
@@ -260,6 +261,7 @@ tobi_status isph_begin(tobi_system *s, tobi_error *err)
     v->held = m->view.held;
     find_geometry(s, m, t);
     find_still(s, m);
+    isph_gaps_add_still(&m->solver, s);
     sph_soft_balance(s, v->concentration_gradient, v->gate);
     s->info.volume_drift = t[1] > 0 ? -t[0]/t[1] : 0;
     sph_porous_begin(s);
