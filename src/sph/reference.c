@@ -192,13 +192,15 @@ double sph_reference_open(tobi_system *s)
 }
 
 /* Down with the surface, but not faster than anything moves: a void that opens in the depth, as behind a
-   body that sets off, is no part of it, where it does not look out. Up slowly. */
+   body that sets off, is no part of it, where it does not look out. Up slowly; but a surface in the depth
+   that only the first step has, where a slope cuts the lattice, is forgotten at once. */
 static double follow(const tobi_system *s, double before, double low, double speed)
 {
     double g = 0;
     if (!(low > 0) || !(before > 0)) return low;
     for (int a = 0; a < 3; a++) g += sph_of(s)->reference.down[a]*s->gravity[a];
     double rise = 0.1*sqrt(g*s->smoothing.spacing)*s->dt;
+    if (s->step <= 2 && before - low > s->smoothing.h) return low;
     return fmin(fmax(low, before - rise), before + speed*s->dt);
 }
 

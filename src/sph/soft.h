@@ -65,8 +65,10 @@ void sph_soft_load(struct tobi_system *s);
 /* N, on a point: that of pressures that no solve knows, sph/hydrostatic.h; and on all of them. */
 void sph_soft_still_force(const struct tobi_system *s, int64_t point, double force[3]);
 void sph_soft_still_sum(struct tobi_system *s, double force[3]);
-/* Marks where they are, for the next three; sph_soft_find does it. */
+/* Marks where they are, for the next four; sph_soft_find does it. */
 tobi_status sph_soft_mark(struct tobi_system *s, tobi_error *err);
+/* Whether a place is within a solid, or nearer than half of its spacing. */
+int sph_soft_fills(const struct tobi_system *s, const double x[3]);
 /* Whether a solid is on the line between two places. */
 int sph_soft_meets(const struct tobi_system *s, const double from[3], const double to[3]);
 /* Whether a solid touches a point of a body. */

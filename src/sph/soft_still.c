@@ -162,6 +162,21 @@ static int meets_solid(const tobi_system *s, const double x[3])
     return 0;
 }
 
+int sph_soft_fills(const tobi_system *s, const double x[3])
+{
+    const sph_soft_marks *m = &sph_of(s)->soft.marks;
+    if (!s->sim->soft.solids || !m->taken) return 0;
+    for (int corner = 0; corner < 8; corner++) {
+        double place[3];
+        int at[3];
+        for (int a = 0; a < 3; a++)
+            place[a] = x[a] + (a < s->box.dimension ? (corner >> a & 1) - 0.5 : 0)/m->inverse;
+        find_mark(m, place, at);
+        if (is_marked(m, at[0], at[1], at[2])) return 1;
+    }
+    return 0;
+}
+
 int sph_soft_meets(const tobi_system *s, const double from[3], const double to[3])
 {
     const sph_soft_marks *m = &sph_of(s)->soft.marks;

@@ -224,12 +224,37 @@ static void tells_patches_in_bodies(void **state)
     tobi_world_destroy(world);
 }
 
+/* A soft block is ground as a body is: water stands on it, or the level is its top. It was 0 there. */
+static void levels_stand_on_soft_solids(void **state)
+{
+    static const double height[] = { 0.04, 0.12 }, level[] = { 0.08, 0.12 };
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        tobi_world *world = make_tank(2, -9.81);
+        tobi_error err;
+        tobi_probe_info info;
+        tobi_solid_def solid = tobi_default_solid_def();
+        tobi_fill_def fill = tobi_default_fill_def();
+        solid.youngs_modulus = 1e5;
+        fill.box_min[0] = -0.05;
+        fill.box_max[0] = 0.05;
+        fill.box_max[1] = height[k];
+        assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 1, &err), TOBI_OK);
+        const int gauge = add(world, "a", TOBI_PROBE_LEVEL, 0.002, 0.1, 0);
+        assert_int_equal(tobi_world_advance(world, 0.005, NULL, &err), TOBI_OK);
+        assert_int_equal(tobi_world_probe(world, gauge, &info, &err), TOBI_OK);
+        if (!(fabs(info.level - level[k]) < 0.008)) fail_msg("%g in place of %g m", info.level, level[k]);
+        tobi_world_destroy(world);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_a_linear_field),
         cmocka_unit_test(reads_walls_and_corners),
         cmocka_unit_test(measures_the_level),
+        cmocka_unit_test(levels_stand_on_soft_solids),
         cmocka_unit_test(refuses_probes_outside),
         cmocka_unit_test(reads_the_foot_of_a_body),
         cmocka_unit_test(tells_points_in_bodies),

@@ -493,6 +493,21 @@ static void wide_domains_cost_nothing(void **state)
     tobi_world_destroy(world);
 }
 
+/* A slope of 45 degrees through places of the lattice. The first step took some at its foot for a surface,
+   and the level of still water rose from there for seconds. */
+static void the_foot_of_a_slope_is_no_surface(void **state)
+{
+    tobi_world *world;
+    (void)state;
+    OK(start_scene("{ \"dimension\": 2, \"spacing\": 0.02, \"end_time\": 1, \"domain\": { \"min\": [0, 0],"
+                   "\"max\": [3, 1.2] }, \"bodies\": [ { \"name\": \"slope\", \"outline\": { \"points\":"
+                   "[[0, 0], [0, 1.1], [1.1, 0]] } } ], \"fluids\": [ { \"name\": \"water\", \"fill\":"
+                   "[ { \"box\": { \"min\": [0, 0], \"max\": [3, 0.6] } } ] } ] }", &world, &err));
+    OK(tobi_world_advance(world, 0.05, NULL, &err));
+    assert_true(fabs(sph_of(&world->system[0])->reference.level - 0.6) < 0.01);
+    tobi_world_destroy(world);
+}
+
 /* Sand 0.12 m wide from x on, 0.24 m high, in water 0.3 m deep. */
 static tobi_world *make_sand(double spacing, double x)
 {
@@ -574,6 +589,7 @@ int main(void)
         cmocka_unit_test(spray_has_a_large_surface),
         cmocka_unit_test(high_domains_change_nothing),
         cmocka_unit_test(wide_domains_cost_nothing),
+        cmocka_unit_test(the_foot_of_a_slope_is_no_surface),
         cmocka_unit_test(gaps_beside_soft_solids_are_no_surface),
         cmocka_unit_test(sand_falls_under_water),
         cmocka_unit_test(water_does_no_work_on_what_rests),

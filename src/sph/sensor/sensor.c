@@ -5,6 +5,8 @@
 #include "geom/vec3.h"
 #include "sph/sensor/around.h"
 #include "sph/sensor/probe.h"
+#include "sph/soft.h"
+#include "sph/state.h"
 #include <math.h>
 #include <string.h>
 
@@ -81,10 +83,15 @@ double tobi_sensor_occupancy(const tobi_system *s, int fluid, const double x[3],
 /* A line along which a fluid is looked for. */
 typedef struct line { const tobi_system *s; int fluid; const double *from, *along; } line;
 
+/* *inside: of a body or soft solid. */
 static double look_along(const line *l, double t, int *inside)
 {
-    double x[3];
+    const tobi_system *s = l->s;
+    double x[3], local[3];
     vec3_add_scaled(x, l->from, t, l->along);
+    for (int k = 0; k < 3; k++) local[k] = k < s->box.dimension ? x[k] - s->box.lower[k] : 0;
+    *inside = sph_soft_fills(s, local);
+    if (*inside) return 0;
     return tobi_sensor_occupancy(l->s, l->fluid, x, inside);
 }
 
