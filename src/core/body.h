@@ -56,6 +56,7 @@ typedef struct tobi_body {
     double density;                  /* kg/m3                                                  */
     int vessel;                      /* 1: liquid is filled into it                            */
     int sealed;                      /* 1: no liquid is in its gaps                            */
+    int dry_outside;                 /* 1: a vessel with no liquid around it                   */
     int blade;                       /* 1: its edge cuts solids                                */
     double edge_resistance;          /* J/m2 of new surface                                    */
     tobi_edge *edge;                 /* of a blade: about the centre of mass, in rest axes     */

@@ -149,10 +149,39 @@ static void dry_gaps_do_not_press(void **state)
     tobi_world_destroy(w);
 }
 
+/* A vessel on a floor that is dry: its water rests on it alone. The water within counted as one around it,
+   and lifted it. */
+static void a_vessel_stands_in_the_dry(void **state)
+{
+    static const char *const methods[] = { "dfsph", "wcsph", "isph" };
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        char text[900];
+        snprintf(text, sizeof text,
+                 "{ \"method\": \"%s\", \"threads\": 1, \"spacing\": 0.02, \"end_time\": 1,"
+                 "\"domain\": { \"min\": [-0.1, -0.1, -0.04], \"max\": [0.3, 0.3, 0.3] },"
+                 "\"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"vessel\": \"tank\","
+                 "\"level\": 0.1 } ] } ], \"bodies\": [ { \"name\": \"tank\", \"vessel\": true,"
+                 "\"box\": { \"min\": [0, 0, 0], \"max\": [0.2, 0.2, 0.2] }, \"open_side\": [0, 0, 1] } ] }",
+                 methods[k]);
+        tobi_error err = { 0 };
+        tobi_step_info info;
+        tobi_world *w;
+        must(start_scene(text, &w, &err), &err);
+        must(tobi_world_advance(w, 0.05, &info, &err), &err);
+        const tobi_body_info tank = block_of(w);
+        print_message("%s: a tank of %.4g N of water bears %.4g N\n", methods[k], info.weight,
+                      -tank.pressure_force[2]);
+        assert_true(fabs(-tank.pressure_force[2]/info.weight - 1) < 0.1);
+        tobi_world_destroy(w);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_stand), cmocka_unit_test(boxes_stand_in_vessels),
+        cmocka_unit_test(a_vessel_stands_in_the_dry),
         cmocka_unit_test(sealed_boxes_are_pressed),
         cmocka_unit_test(blocks_are_free),
         cmocka_unit_test(dry_gaps_do_not_press),

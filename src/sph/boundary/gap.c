@@ -2,8 +2,8 @@
    sphere 8 spacings across a third of the section. Water would fill it, at the pressure of still water (18).
    So points there are pressed by all the water above them: by as much of it as particles do not cover, and
    only what moves is missing. A body that no particle sees lies in the dry, though still water may stand
-   higher elsewhere. Drawback: a flat body that lies close has its full buoyancy too, as if it stood on
-   grains. */
+   higher elsewhere. So does a vessel on a side that only liquid within its box or above it sees. Drawback: a
+   flat body that lies close has its full buoyancy too, as if it stood on grains. */
 #include "sph/boundary/boundary.h"
 #include "geom/vec3.h"
 #include "sph/state.h"
@@ -57,6 +57,23 @@ void tobi_boundary_find_neighbors(tobi_system *s)
                          s->box.dimension);
 }
 
+/* Whether no particle that sees a vessel is beside or below its box. */
+static int is_dry_outside(const tobi_system *s, int k)
+{
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    const tobi_body *b = &s->sim->bodies[k];
+    const double *g = s->sim->def.gravity, most = 0.5*sqrt(vec3_dot(g, g));
+    double low[3], high[3];
+    if (!b->vessel) return 0;
+    tobi_bvh_box(b->bvh, low, high);
+    for (int64_t q = n->first[k]; q < n->first[k + 1]; q++) {
+        const double *x = &s->particles.position[n->link[q].particle].x;
+        for (int a = 0; a < s->box.dimension; a++)
+            if ((x[a] < low[a] && g[a] <= most) || (x[a] > high[a] && g[a] >= -most)) return 0;
+    }
+    return 1;
+}
+
 /* The body that the q-th of all points belongs to. */
 static int body_of(const tobi_system *s, int64_t q)
 {
@@ -86,7 +103,8 @@ static void wet_range(const void *view, int64_t begin, int64_t end, double *tota
         if (b->covered[q] >= TOBI_COVERED || b->wet[q] == TOBI_BURIED || b->is_absent || b->sealed)
             continue;
         if (!(tobi_reference_pressure(&state->reference, x) > 0)) continue;
-        if (tobi_boundary_near(s, k, x, n, s->smoothing.h)) b->wet[q] = TOBI_WET_GAP;
+        const int near = tobi_boundary_near(s, k, x, n, s->smoothing.h);
+        if (near & (b->dry_outside ? TOBI_NEAR_BODY : ~0)) b->wet[q] = TOBI_WET_GAP;
     }
 }
 
@@ -95,6 +113,7 @@ void tobi_boundary_fill_gaps(tobi_system *s)
     sph_state *state = sph_of(s);
     tobi_boundary_links *n = &state->links;
     const int bodies = s->sim->body_count;
+    for (int k = 0; k < bodies; k++) s->sim->bodies[k].dry_outside = is_dry_outside(s, k);
     if (!(state->reference.push > 0)) return;
     tobi_boundary_find_neighbors(s);
     tobi_launch(&s->sim->exec, TOBI_HOST(wet_range, 0, 0), s, 0, n->bins[bodies].item, NULL);

@@ -121,7 +121,7 @@ void isph_gaps_find(isph_solver *m, tobi_system *s, int k, isph_point *point, do
     tobi_launch(m->exec, TOBI_HOST(mark_gaps, TOBI_SUMS, 1), &g, 0, g.b->point_count, t);
     for (int q = 0; q < TOBI_NEAR_KINDS; q++) {
         double rest[TOBI_TOTALS] = { 0 };
-        if (!(t[q] > 0)) continue;
+        if (!(t[q] > 0) || (g.b->dry_outside && 1 << q != TOBI_NEAR_BODY)) continue;
         g.kind = 1 << q;
         find_gap(m, &g, &body->gap[q], rest);
         body->gaps |= body->gap[q].rim > 0;
