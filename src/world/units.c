@@ -12,6 +12,8 @@
 static const double GAS = 50, LIGHTEST = 0.01, HEAVIEST = 50;
 /* m/s2: some thirty times the earth's. */
 static const double STRONG = 300;
+/* Degrees: no sand is as smooth; it is more than a right angle in radians. */
+static const double SMOOTH = 2;
 /* m/s: faster than any hose. */
 static const double JET = 30;
 /* m, and the share of its height that the liquid falls until the end: more than a first look takes. */
@@ -135,6 +137,19 @@ static tobi_status note_jets(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+static tobi_status note_sand(tobi_world *w, const tobi_system *s, tobi_error *err)
+{
+    for (int m = 0; m < s->solid_count; m++) {
+        const tobi_solid_def *def = &s->solids[m].def;
+        char text[TOBI_NOTE];
+        if (def->model != TOBI_SAND || !(def->friction_angle > 0 && def->friction_angle < SMOOTH)) continue;
+        snprintf(text, sizeof text, tr("its friction_angle is %.3g degrees; that of sand is 25 to 45 degrees, "
+                 "0.44 to 0.79 in radians\n"), def->friction_angle);
+        TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[m].name, text, err));
+    }
+    return TOBI_OK;
+}
+
 /* A gel whose stiffness stands in kPa is a puddle. */
 static tobi_status note_solids(tobi_world *w, const tobi_system *s, double g, tobi_error *err)
 {
@@ -142,8 +157,8 @@ static tobi_status note_solids(tobi_world *w, const tobi_system *s, double g, to
         const tobi_solid_def *def = &s->solids[m].def;
         double low = INFINITY, high = -INFINITY;
         char text[TOBI_NOTE];
-        if (def->model != TOBI_NEO_HOOKEAN && def->model != TOBI_COROTATED && def->model != TOBI_VON_MISES)
-            continue;
+        if (def->model != TOBI_NEO_HOOKEAN && def->model != TOBI_COROTATED &&
+            def->model != TOBI_VON_MISES && def->model != TOBI_SAND) continue;
         for (int64_t i = 0; i < s->particles.count; i++) {
             if (s->particles.fluid[i] != m) continue;
             const double x[3] = { s->particles.position[i].x, s->particles.position[i].y,
@@ -168,6 +183,7 @@ tobi_status tobi_world_note_units(tobi_world *w, tobi_error *err)
     TOBI_TRY(note_up(w, g, err));
     TOBI_TRY(note_jets(w, err));
     TOBI_TRY(note_inertia(w, err));
+    for (int k = 0; k < w->system_count; k++) TOBI_TRY(note_sand(w, &w->system[k], err));
     for (int k = 0; k < w->system_count && g > 0; k++) TOBI_TRY(note_solids(w, &w->system[k], g, err));
     if (w->system[0].fluid_count == 0) return TOBI_OK;
     TOBI_TRY(note_gas(w, err));

@@ -330,19 +330,21 @@ static void a_sudden_wave_maker_is_told(void **state)
     }
 }
 
-/* Young's modulus in kPa. */
-static void a_gel_in_kilopascals_is_told(void **state)
+/* Young's modulus in kPa, of sand too; and its friction angle in radians. */
+static void solids_in_other_units_are_told(void **state)
 {
-    static const char *const modulus[] = { "20", "2e4" };
+    static const char *const modulus[] = { "20", "2e4", "20, \"model\": \"sand\", \"friction_angle\": 0.55",
+                                           "2e4, \"model\": \"sand\"" };
     char text[600];
     (void)state;
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 4; k++) {
         snprintf(text, sizeof text, "{ \"method\": \"mlsmpm\", \"dimension\": 2, "
                  "\"domain\": { \"min\": [0, 0], \"max\": [0.2, 0.2] }, \"spacing\": 0.01, "
                  "\"end_time\": 1, \"gravity\": [0, -9.81], "
                  "\"solids\": [ { \"name\": \"gel\", \"density\": 1050, \"youngs_modulus\": %s, \"fill\": "
                  "[ { \"box\": { \"min\": [0.05, 0], \"max\": [0.15, 0.1] } } ] } ] }", modulus[k]);
-        assert_int_equal(count_in_scene(text, "'gel': its own weight presses with"), k == 0);
+        assert_int_equal(count_in_scene(text, "'gel': its own weight presses with"), k%2 == 0);
+        assert_int_equal(count_in_scene(text, "'gel': its friction_angle is 0.55 degrees"), k == 2);
     }
 }
 
@@ -361,7 +363,7 @@ int main(void)
         cmocka_unit_test(ships_that_cannot_be_are_told),
         cmocka_unit_test(friction_without_a_partner_is_told),
         cmocka_unit_test(a_sudden_wave_maker_is_told),
-        cmocka_unit_test(a_gel_in_kilopascals_is_told),
+        cmocka_unit_test(solids_in_other_units_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
