@@ -143,8 +143,9 @@ static tobi_status note_sand(tobi_world *w, const tobi_system *s, tobi_error *er
         const tobi_solid_def *def = &s->solids[m].def;
         char text[TOBI_NOTE];
         if (def->model != TOBI_SAND || !(def->friction_angle > 0 && def->friction_angle < SMOOTH)) continue;
-        snprintf(text, sizeof text, tr("its friction_angle is %.3g degrees; that of sand is 25 to 45 degrees, "
-                 "0.44 to 0.79 in radians\n"), def->friction_angle);
+        snprintf(text, sizeof text,
+                 tr("its friction_angle is %.3g degrees; that of sand is 25 to 45 degrees, "
+                    "0.44 to 0.79 in radians\n"), def->friction_angle);
         TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[m].name, text, err));
     }
     return TOBI_OK;

@@ -172,7 +172,7 @@ static void a_vessel_stands_in_the_dry(void **state)
         const tobi_body_info tank = block_of(w);
         print_message("%s: a tank of %.4g N of water bears %.4g N\n", methods[k], info.weight,
                       -tank.pressure_force[2]);
-        assert_true(fabs(-tank.pressure_force[2]/info.weight - 1) < 0.1);
+        assert_true(fabs(-tank.pressure_force[2]/info.weight - 1) < 0.01);
         tobi_world_destroy(w);
     }
 }

@@ -57,21 +57,34 @@ void tobi_boundary_find_neighbors(tobi_system *s)
                          s->box.dimension);
 }
 
+typedef struct beside { const tobi_system *s; double low[3], high[3], along; } beside;
+
+/* totals[0]: particles that see a body from beside or below its box. */
+static void count_beside(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const beside *v = view;
+    const tobi_boundary_links *n = &sph_of(v->s)->links;
+    const double *g = v->s->sim->def.gravity;
+    for (int64_t q = begin; q < end; q++) {
+        const double *x = &v->s->particles.position[n->link[q].particle].x;
+        int out = 0;
+        for (int a = 0; a < v->s->box.dimension; a++)
+            out |= (x[a] < v->low[a] && g[a] <= v->along) || (x[a] > v->high[a] && g[a] >= -v->along);
+        totals[0] += out;
+    }
+}
+
 /* Whether no particle that sees a vessel is beside or below its box. */
 static int is_dry_outside(const tobi_system *s, int k)
 {
-    const tobi_boundary_links *n = &sph_of(s)->links;
+    const int64_t *first = sph_of(s)->links.first;
     const tobi_body *b = &s->sim->bodies[k];
-    const double *g = s->sim->def.gravity, most = 0.5*sqrt(vec3_dot(g, g));
-    double low[3], high[3];
+    double t[TOBI_TOTALS];
+    beside v = { s, .along = 0.5*vec3_length(s->sim->def.gravity) };
     if (!b->vessel) return 0;
-    tobi_bvh_box(b->bvh, low, high);
-    for (int64_t q = n->first[k]; q < n->first[k + 1]; q++) {
-        const double *x = &s->particles.position[n->link[q].particle].x;
-        for (int a = 0; a < s->box.dimension; a++)
-            if ((x[a] < low[a] && g[a] <= most) || (x[a] > high[a] && g[a] >= -most)) return 0;
-    }
-    return 1;
+    tobi_bvh_box(b->bvh, v.low, v.high);
+    tobi_launch(&s->sim->exec, TOBI_HOST(count_beside, 1, 0), &v, first[k], first[k + 1], t);
+    return t[0] == 0;
 }
 
 /* The body that the q-th of all points belongs to. */
