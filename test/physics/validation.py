@@ -68,8 +68,8 @@ class Tree:
         return sorted(path.parent.name for path in (self.root / "test/physics").glob("*/run.py"))
 
     def names_folder(self, text, name):
-        """A name that a method has too is a folder only in a path: it mostly means the method."""
-        return re.search(rf"""{'/ "' if name in self.methods else '["/]'}{name}["/]""", text)
+        """In a path: the word alone is mostly a method, a shape or the name of a body."""
+        return re.search(rf"""/ ?"{name}"|/{name}["/]|"{name}/""", text)
 
     def case_files(self, case):
         folder = self.root / "test/physics" / case
