@@ -212,13 +212,6 @@ static int meets_liquid(const tobi_system *s, const double x[3])
     return nearest < reach*reach;
 }
 
-static int holds(const tobi_solid *solid, int body)
-{
-    for (int c = 0; c < solid->clamp_count; c++)
-        if (solid->clamp[c] == body) return 1;
-    return 0;
-}
-
 /* The inside of a body that holds the solid does not count: by isph no water presses where it holds it, and
    still water would press the solid as if it were closed there. */
 static int meets_body(const tobi_system *s, const tobi_solid *solid, const double x[3])
@@ -227,7 +220,7 @@ static int meets_body(const tobi_system *s, const tobi_solid *solid, const doubl
     for (int k = 0; k < s->sim->body_count; k++) {
         const tobi_body *b = &s->sim->bodies[k];
         if (!b->is_absent && (tobi_bvh_closest(b->bvh, x, COVER*s->smoothing.spacing, &hit) ||
-                              (!holds(solid, k) && tobi_bvh_inside(b->bvh, x)))) return 1;
+                              (!tobi_solid_is_clamped(solid, k) && tobi_bvh_inside(b->bvh, x)))) return 1;
     }
     return 0;
 }
