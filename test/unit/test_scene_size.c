@@ -112,7 +112,7 @@ static void put_block(FILE *out, int i)
 static void put_wrong_block(FILE *out, int i)
 {
     (void)i;
-    fprintf(out, "{ \"start\": [0, 0, 0], \"end\": [1, 1, 0.5], \"density\": \"heavy\" }");
+    fprintf(out, "{ \"start\": [0, 0, 0], \"end\": [1, 1, 0.5], \"density\": \"heavy\", \"b\": 2 }");
 }
 
 static const char old_head[] = "{ \"Configuration\": { \"domainEnd\": [1, 1, 256], \"particleRadius\": 0.05,"
