@@ -59,17 +59,33 @@ static void print_flotation(const tobi_body_matter *m)
     }
 }
 
-/* Of bodies that move by forces. */
-static void print_bodies(const tobi_world *world, int dimension)
+enum { BODIES_LISTED = 12 };
+
+/* Those that move by forces, as they start: the first ones, and how many there are. */
+typedef struct moving_bodies {
+    int count, number[BODIES_LISTED];
+    tobi_body_matter matter[BODIES_LISTED];
+} moving_bodies;
+
+static void find_bodies(const tobi_world *world, moving_bodies *b)
 {
-    enum { LISTED = 12 };
-    const char *each = dimension == 3 ? "" : "/m";
     tobi_body_matter m;
-    int count = 0;
+    b->count = 0;
     for (int k = 0; tobi_world_body_matter(world, k, &m) == TOBI_OK; k++) {
-        if (m.dynamics == TOBI_PRESCRIBED || ++count > LISTED) continue;
+        if (m.dynamics == TOBI_PRESCRIBED || b->count++ >= BODIES_LISTED) continue;
+        b->number[b->count - 1] = k;
+        b->matter[b->count - 1] = m;
+    }
+}
+
+static void print_bodies(const tobi_world *world, const moving_bodies *b, int dimension)
+{
+    const char *each = dimension == 3 ? "" : "/m";
+    for (int k = 0; k < b->count && k < BODIES_LISTED; k++) {
+        const tobi_body_matter m = b->matter[k];
         print_label(tr("body"));
-        printf("%s: %.4g kg%s, %.4g m3%s", tobi_world_body_name(world, k), m.mass, each, m.volume, each);
+        printf("%s: %.4g kg%s, %.4g m3%s", tobi_world_body_name(world, b->number[k]), m.mass, each, m.volume,
+               each);
         if (m.liquid > 0.0) printf(tr(", %.4g of the liquid's density"), m.mass / m.volume / m.liquid);
         if (dimension == 2) printf(tr(", centre of mass %.4g %.4g m"), m.centre[0], m.centre[1]);
         else printf(tr(", centre of mass %.4g %.4g %.4g m"), m.centre[0], m.centre[1], m.centre[2]);
@@ -82,9 +98,9 @@ static void print_bodies(const tobi_world *world, int dimension)
                    m.solids > 1 ? "s" : "");
         printf("\n");
     }
-    if (count > LISTED) {
+    if (b->count > BODIES_LISTED) {
         print_label(tr("body"));
-        printf(tr("and %d more that move by forces\n"), count - LISTED);
+        printf(tr("and %d more that move by forces\n"), b->count - BODIES_LISTED);
     }
 }
 
@@ -119,6 +135,7 @@ enum { LINES_LISTED = 12 };
 /* The first steps of a run, and what they tell of all. */
 typedef struct trial {
     tobi_line_info line[LINES_LISTED];       /* as they start               */
+    moving_bodies bodies;
     int steps;               /* taken; below 2 nothing is known             */
     double wall, step;       /* of one of them, s                           */
     double least, most;      /* time step of the run, s; 0: it is not known */
@@ -142,6 +159,7 @@ static void try_steps(const tobi_world_def *d, tobi_world *world, int starts, tr
     *t = (trial){ .least = find_step(d, world) };
     t->most = t->least;
     for (int k = 0; k < LINES_LISTED; k++) tobi_world_line(world, k, &t->line[k]);
+    find_bodies(world, &t->bodies);
     if (starts) t->status = measure_steps(world, d->end_time, &t->steps, &t->wall, &t->step, &t->err);
     if (t->status != TOBI_OK || t->steps < 2 || (d->time_step > 0.0 && t->step > 0.5 * t->least)) return;
     t->most = t->step;
@@ -195,7 +213,7 @@ static void print_scene(const tobi_scene *scene, const tobi_world *world, const 
     printf("%g m\n", d->spacing);
     print_step(d, world, t);
     print_solids(world, d->dimension);
-    print_bodies(world, d->dimension);
+    print_bodies(world, &t->bodies, d->dimension);
     if (t->steps > 0) print_lines(world, d->dimension, t);
     print_zones(world, d->dimension);
     print_scalars(world);

@@ -297,11 +297,14 @@ static void check_dynamics(const tobi_scene *scene, tobi_source *source, int i, 
 {
     const tobi_body_def *def = &scene->bodies[i].def;
     json_t *value = json_array_get(json_object_get(scene->root, "bodies"), (size_t)i);
-    tobi_place motion = { entry, "motion", 0 }, control = { entry, "control", 0 };
+    tobi_place motion = { entry, "motion", 0 }, second = { &motion, NULL, 1 };
+    tobi_place control = { entry, "control", 0 };
     int controls = json_object_get(value, "control") != NULL, moves = def->dynamics != TOBI_PRESCRIBED;
-    if (moves && def->motion && def->motion_rigid)
-        tobi_source_mistake(source, &motion, "is rigid, and this body is %s; a motion of a body that moves "
-                            "by forces changes its shape: a script with deform",
+    int added = json_array_size(json_object_get(value, "motion")) > 1;       /* to a script with deform */
+    if (moves && def->motion && (def->motion_rigid || added))
+        tobi_source_mistake(source, def->motion_rigid ? &motion : &second,
+                            "is rigid, and this body is %s; a motion of a body that moves by forces changes "
+                            "its shape: a script with deform",
                             def->dynamics == TOBI_FREE ? "free" : "controlled");
     if (controls && def->dynamics != TOBI_CONTROLLED)
         tobi_source_mistake(source, &control, "is for a body whose dynamics is \"controlled\"");

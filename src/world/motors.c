@@ -14,6 +14,7 @@
 
 static const double SOON = 1e-9;         /* s, or share of the time: just before and after it           */
 static const double JUMP = 1e-6;         /* in the unit of the motor: smaller, it is rounding           */
+static const double KICK = 1e-3;         /* the same per second, of a difference over SOON              */
 
 /* The words of a hinge, a guide and a slide. */
 static const struct { const char *joint, *place, *unit, *load, *most, *has; } words[] = {
@@ -245,18 +246,36 @@ tobi_status tobi_motors_start(tobi_world *w, tobi_error *err)
     return tobi_motors_tell(w, 0, 0, err);
 }
 
-/* A jump at time t of a motor that is as strong as it must be. */
+/* Of a place just after t, or just before it with `soon` below 0: in its unit per second. */
+static tobi_status find_rate(const tobi_motor_source *m, double t, double soon, double *rate, tobi_error *err)
+{
+    double near, far;
+    TOBI_TRY(find_value(m, t + soon, &near, err));
+    TOBI_TRY(find_value(m, t + 2*soon, &far, err));
+    *rate = (far - near)/soon;
+    return TOBI_OK;
+}
+
+/* A jump at time t of a motor that is as strong as it must be: of its place, or else of its speed. */
 static tobi_status note_jump(tobi_world *w, const tobi_motor_source *m, double t, tobi_error *err)
 {
     const tobi_constraint *j = &w->sim.constraints.at[m->joint];
-    const int speed = m->kind == TOBI_MOTOR_SPEED;
-    const double soon = SOON*(1 + t);
-    double before, after;
+    const double soon = SOON*(1 + t), unit = m->slides ? 1 : 180/acos(-1);
+    int speed = m->kind == TOBI_MOTOR_SPEED;
+    double before, after, rate[2] = { 0 };
     char text[TOBI_NOTE];
     TOBI_TRY(find_value(m, t > 0 ? t - soon : 0, &before, err));
     TOBI_TRY(find_value(m, t + soon, &after, err));
-    if (t == 0 && speed) before = tobi_constraint_rate(j, w->sim.bodies)*(m->slides ? 1 : 180/acos(-1));
-    if (!(fabs(after - before) > JUMP)) return TOBI_OK;
+    if (t > 0 && !speed) TOBI_TRY(find_rate(m, t, -soon, &rate[0], err));
+    if (!speed) TOBI_TRY(find_rate(m, t, soon, &rate[1], err));
+    int jumps = fabs(after - before - soon*(rate[0] + rate[1])) > JUMP;
+    if (t == 0) rate[0] = unit*tobi_constraint_rate(j, w->sim.bodies);
+    if (t == 0 && speed) jumps = fabs(after - rate[0]) > JUMP;
+    if (!speed && !jumps && fabs(rate[1] - rate[0]) > KICK) {
+        after = rate[1];
+        speed = jumps = 1;
+    }
+    if (!jumps) return TOBI_OK;
     snprintf(text, sizeof text, tr("its motor asks for %.4g %s%s at %.4g s: the body %s that in one step, by "
              "as large a %s as it takes; %s, or a %s, lets it get there in time\n"), after,
              words[m->slides].unit,

@@ -222,13 +222,25 @@ told motors.json "joint 'tail': its motor asks for 12 degrees/s at 0 s: the body
 told motors.json "'tail': its motor asks for 12 degrees/s at 0.02 s" --set joints.tail.motor='{"speed":12,"start":0.02}'
 told motors.json "'tail': its motor asks for 5 degrees at 0.02 s: the body goes that in one step" \
     --set joints.tail.motor='{"angle":5,"start":0.02}'
+told motors.json "'tail': its motor asks for 314.2 degrees/s at 0 s: the body has that in one step" \
+    --set joints.tail.motor='{"angle":0,"amplitude":10,"period":0.2}'
 printf 'time,speed\n0,0.5\n0.04,2\n' > speeds.csv
 told slides.json "as large a force as it takes; a file that begins where the body is, or a force_max, lets it get there in time" \
     --set bodies.piston.guide.motor.file=speeds.csv
-for motor in '{"speed":12,"ramp":0.1}' '{"speed":12,"torque_max":3}' '{"speed":0}' '{"torque":3}' '{"speed":12,"start":0.02,"ramp":0.1}'; do
+for motor in '{"speed":12,"ramp":0.1}' '{"speed":12,"torque_max":3}' '{"speed":0}' '{"torque":3}' '{"speed":12,"start":0.02,"ramp":0.1}' \
+    '{"angle":0,"amplitude":10,"period":0.2,"ramp":0.1}' '{"angle":-10,"amplitude":10,"period":0.2,"phase":90}'; do
     "$program" check motors.json --set joints.tail.motor="$motor" > out.txt 2>&1
     check "check does not tell of $motor" eval '! grep -q "its motor" out.txt'
 done
+cat > swells.json <<'END2'
+{ "dimension": 2, "method": "isph", "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.05, "end_time": 1,
+  "gravity": [0, 0], "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.3] } } ] } ],
+  "bodies": [ { "name": "bar", "box": { "min": [0.3, 0.4], "max": [0.7, 0.5] }, "density": 1000, "dynamics": "free",
+                "motion": { "script": "swells.lua" } } ] }
+END2
+echo 'function deform(x, y, z, t) return x*(1 + t), y, z end' > swells.lua
+expect 0 "" check swells.json
+check "check tells bodies as they start" grep -q "^body  *bar: 40 kg/m, .*, inertia 0.5667 kg m2/m" out.txt
 check "resolved.json has the motors" grep -q '"amplitude": 300' whole/resolved.json
 
 "$program" check rafts.json --set joints.hinge.stiffness=1e9 > out.txt 2>&1

@@ -183,9 +183,13 @@ static void test_scene_mistakes(void **state)
     const char *at = "bodies[0].dynamics: ", *control = "bodies[0].control: ";
     write_file("good.lua", "function control() end");
     write_file("place.lua", "function place() return 0, 0, 0 end");
+    write_file("shape.lua", "function deform(x, y, z) return x, y, z end");
     expect_line("\"dynamics\": \"fre\"", "mlsmpm", at, "did you mean \"free\"?");
     expect_line("\"dynamics\": \"free\", \"motion\": { \"translation\": { \"velocity\": [1, 0, 0] } }",
                 "mlsmpm", "bodies[0].motion: ", "is rigid, and this body is free");
+    expect_line("\"dynamics\": \"free\", \"motion\": [ { \"script\": \"shape.lua\" }, "
+                "{ \"translation\": { \"velocity\": [1, 0, 0] } } ]",
+                "dfsph", "bodies[0].motion[1]: ", "is rigid, and this body is free");
     expect_line("\"dynamics\": \"controlled\"", "mlsmpm", control, "has a control program");
     expect_line("\"dynamics\": \"free\", \"control\": { \"script\": \"good.lua\" }", "mlsmpm", control,
                 "whose dynamics is \"controlled\"");
@@ -196,6 +200,7 @@ static void test_scene_mistakes(void **state)
     expect_line("\"friction_coefficient\": -1", "mlsmpm", "bodies[0].friction_coefficient: ", "allowed is");
     remove("good.lua");
     remove("place.lua");
+    remove("shape.lua");
 }
 
 static void test_damaged(void **state)
