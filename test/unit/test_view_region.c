@@ -239,6 +239,44 @@ static void test_isolines_of_groups(void **state)
         }
 }
 
+/* Isolines reach the surface of the liquid and end there. */
+static void test_isolines_end(void **state)
+{
+    (void)state;
+    enum { WIDE = 12, HIGH = 8, SIDE = 400 };
+    static double place[WIDE*HIGH][3];
+    static float value[WIDE*HIGH];
+    static uint8_t bare[SIDE][SIDE][3], lines[SIDE][SIDE][3];
+    static const float map[2][3] = { { 1, 0, 0 }, { 0, 0, 1 } };
+    tobi_error err = { 0 };
+    tobi_picture p = tobi_default_picture();
+    int inside = 0;
+    for (int i = 0; i < WIDE*HIGH; i++) {
+        place[i][0] = 0.05*(i%WIDE + 0.5), place[i][1] = 0.05*(i/WIDE + 0.1);
+        value[i] = (float)(i%WIDE)/(WIDE - 1);
+    }
+    p.width = p.height = SIDE;
+    p.dimension = 2;
+    p.box_max[0] = p.box_max[1] = 0.75;
+    p.particle_count = WIDE*HIGH;
+    p.positions = (const double (*)[3])place;
+    p.values = value;
+    p.palette = map, p.palette_count = 2;
+    p.value_max = 1;
+    p.radius = 0.025;
+    if (tobi_picture_draw(&p, &bare[0][0][0], &err)) fail_msg("%s", err.text);
+    p.isolines = 5;
+    if (tobi_picture_draw(&p, &lines[0][0][0], &err)) fail_msg("%s", err.text);
+    const int surface = (int)(SIDE*(0.5 + 0.92*0.5) - 0.92*SIDE*0.38/0.75);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            const int differs = memcmp(bare[y][x], lines[y][x], 3) != 0;
+            if (differs && y < surface - 4) fail_msg("a line in the air at pixel %d, %d", x, y);
+            inside += differs && y < surface + 8;
+        }
+    assert_true(inside >= 5*8);      /* all reach the surface */
+}
+
 /* An isoline is as dark at the ends of its parts as between them. */
 static void test_even_lines(void **state)
 {
@@ -407,6 +445,7 @@ int main(void)
                                         cmocka_unit_test(test_no_gap_between_liquids),
                                         cmocka_unit_test(test_color_bar),
                                         cmocka_unit_test(test_isolines_of_groups),
+                                        cmocka_unit_test(test_isolines_end),
                                         cmocka_unit_test(test_standing_in_water),
                                         cmocka_unit_test(test_even_lines),
                                         cmocka_unit_test(test_flat_bodies) };
