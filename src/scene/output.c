@@ -135,6 +135,28 @@ static void check_camera(tobi_source *source, const tobi_view_def *view, const t
     tobi_source_mistake_at_key(source, unread, "is for a camera.angle; without one the view fits the domain");
 }
 
+/* Of the clip plane and the ends of the colours: what would not be used. */
+static void check_picture(const tobi_scene *scene, tobi_source *source, const tobi_view_def *view,
+                          const tobi_place *picture)
+{
+    static const double nowhere[3] = { 0 };
+    const double *n = view->clip_normal;
+    tobi_place normal = { picture, "clip_normal", 0 }, point = { picture, "clip_point", 0 };
+    tobi_place slice = { picture, "slice", 0 }, min = { picture, "min", 0 }, max = { picture, "max", 0 };
+    const tobi_place *unread = view->slice > 0 ? &slice
+                             : memcmp(view->clip_point, nowhere, sizeof nowhere) != 0 ? &point : NULL;
+    if (unread && n[0] == 0 && n[1] == 0 && n[2] == 0)
+        tobi_source_mistake_at_key(source, unread,
+                                   "is for a picture.clip_normal; without one nothing is cut off");
+    if (scene->world.dimension == 2 && n[2] != 0 && n[0] == 0 && n[1] == 0)
+        tobi_source_mistake(source, &normal,
+                            "points out of the plane of the 2-D scene: nothing would be cut off");
+    if (view->max <= view->min && (view->min != 0 || view->max != 0))
+        tobi_source_mistake(source, view->min != 0 ? &min : &max,
+                            "picture.min %g is not below picture.max %g; without both each picture has the "
+                            "range of its own values", view->min, view->max);
+}
+
 /* place: of the object that has camera and picture. */
 static void check_view(const tobi_scene *scene, tobi_source *source, const tobi_view_def *view,
                        const tobi_place *place)
@@ -146,6 +168,7 @@ static void check_view(const tobi_scene *scene, tobi_source *source, const tobi_
         memcmp(view->position, view->look_at, sizeof view->look_at) == 0)
         tobi_source_mistake(source, &angle, "needs a camera.position that is not camera.look_at");
     check_camera(source, view, &camera);
+    check_picture(scene, source, view, &picture);
     if (view->field) check_names(scene, source, &field, view->field, 1);
     check_field_of(scene, source, &field_of, view->field_of);
     if (view->follow && !tobi_scene_find_body(scene, view->follow))

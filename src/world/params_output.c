@@ -49,7 +49,7 @@ const tobi_param_table tobi_probe_table = {
       .doc = "Where the pictures of a 3-D scene are taken from, if camera.angle is given." }, \
     { .key = "camera.look_at", VEC3, AT(type, in look_at), PLACE, .unit = "m", \
       .doc = "The point in the middle of the pictures, if camera.angle is given." }, \
-    { .key = "camera.angle", REAL, AT(type, in angle), RANGE(0.01, 150), \
+    { .key = "camera.angle", REAL, AT(type, in angle), RANGE(1, 150), \
       .unit = "degrees", .text = "fit", \
       .doc = "Vertical field of view; fit shows the whole domain from where it looks best." }, \
     { .key = "picture.look", CHOICE("natural|surface|particles", 3), AT(type, in look), \
@@ -70,7 +70,7 @@ const tobi_param_table tobi_probe_table = {
       .unit = "that of the field", .doc = "Value at the lower end of the colours." }, \
     { .key = "picture.max", REAL, AT(type, in max), RANGE(-1e30, 1e30), \
       .unit = "that of the field", \
-      .doc = "Value at the upper end; not above min: each picture has the range of its own values." }, \
+      .doc = "Value at the upper end; without min and max each picture has the range of its own values." }, \
     { .key = "picture.width", INT, AT(type, in width), RANGE(16, 8192), .unit = "pixels", .text = "fit", \
       .doc = "Width of the pictures; fit: by their height, without one 1280 in 3-D, and in 2-D such that " \
              "the domain fills them." }, \

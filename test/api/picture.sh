@@ -106,6 +106,14 @@ expect 1 "there is no field \"pressur\"" picture dam --set output.picture.field=
 expect 1 "is \"solids\", but the scene has none" picture dam --set output.picture.field_of=solids
 expect 1 "\"nobody\" is no body of the scene" run dam.json --out no --set output.picture.follow=nobody
 expect 2 "--output: 'x' is not a number from 0 on" picture dam --output x
+cat > flat.json <<'END'
+{ "dimension": 2, "domain": {"min": [0, 0], "max": [0.4, 0.3]}, "spacing": 0.02, "end_time": 0.1,
+  "fluids": [{"name": "water", "fill": [{"box": {"min": [0, 0], "max": [0.2, 0.2]}}]}],
+  "output": {"picture": {"clip_point": [0.1, 0, 0], "clip_normal": [0, 0, 1]}} }
+END
+expect 1 "points out of the plane of the 2-D scene" check flat.json
+expect 0 "" check flat.json --set 'output.picture.clip_normal=[1, 0, 0]'
+expect 1 "is 0.5, allowed is 1 to 150" check dam.json --set output.camera.angle=0.5
 expect 1 "cannot write /no/such/p.png" picture dam --out /no/such/p.png
 
 echo "$passed passed, $failed failed"

@@ -192,13 +192,20 @@ static void test_what_is_let_be(void **state)
     free(line);
 }
 
-/* A camera without an angle stands nowhere: the view fits the domain. */
-static void test_cameras(void **state)
+/* A camera without an angle stands nowhere: the view fits the domain. A slice needs a plane. */
+static void test_views(void **state)
 {
     (void)state;
     static const struct { const char *output, *told; } cases[] = {
         { "\"camera\": { \"position\": [1, 2, 3] }", "output.camera.position: is for a camera.angle" },
         { "\"camera\": { \"look_at\": [1, 2, 3] }", "output.camera.look_at: is for a camera.angle" },
+        { "\"picture\": { \"slice\": 0.1 }",
+          "output.picture.slice: is for a picture.clip_normal; without one nothing is cut off" },
+        { "\"picture\": { \"clip_point\": [1, 2, 3] }",
+          "output.picture.clip_point: is for a picture.clip_normal" },
+        { "\"picture\": { \"min\": 5 }", "output.picture.min: picture.min 5 is not below picture.max 0" },
+        { "\"picture\": { \"max\": -5 }", "output.picture.max: picture.min 0 is not below picture.max -5" },
+        { "\"picture\": { \"min\": -5 }", "" },
         { "\"views\": [ { \"name\": \"v\", \"camera\": { \"position\": [1, 2, 3] } } ]",
           "output.views[0].camera.position: is for a camera.angle; without one the view fits the domain" },
         { "\"camera\": { \"position\": [1, 2, 3], \"angle\": 30 }", "" },
@@ -218,7 +225,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_keys), cmocka_unit_test(test_resolved), cmocka_unit_test(test_what_is_let_be),
-        cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_views),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
