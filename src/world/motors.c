@@ -246,13 +246,13 @@ tobi_status tobi_motors_start(tobi_world *w, tobi_error *err)
     return tobi_motors_tell(w, 0, 0, err);
 }
 
-/* Of a place just after t, or just before it with `soon` below 0: in its unit per second. */
+/* Of a place just after t, or just before it with `soon` below 0: in its unit per second. A parabola, so that
+   a short ramp has none. */
 static tobi_status find_rate(const tobi_motor_source *m, double t, double soon, double *rate, tobi_error *err)
 {
-    double near, far;
-    TOBI_TRY(find_value(m, t + soon, &near, err));
-    TOBI_TRY(find_value(m, t + 2*soon, &far, err));
-    *rate = (far - near)/soon;
+    double at[3];
+    for (int k = 0; k < 3; k++) TOBI_TRY(find_value(m, t + (k + 1)*soon, &at[k], err));
+    *rate = (-5*at[0] + 8*at[1] - 3*at[2])/(2*soon);
     return TOBI_OK;
 }
 

@@ -4,8 +4,10 @@
 #include "world/limits.h"
 #include "world/openings.h"
 #include "base/error.h"
+#include "geom/vec3.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* Which key of the scene makes steps shorter, and its value. */
 static const char *name_cfl(const tobi_system *s, double *value)
@@ -21,13 +23,34 @@ static const double RETURN_REACH = 20;
 /* Share of the domain from which liquid that inlets bring has pockets without a free surface. */
 static const double CROWDED = 0.8;
 
+/* m/s, of its fastest corner, as it is after the step. */
+static double find_speed(const tobi_body *b)
+{
+    const tobi_rigid *r = &b->rigid;
+    double most = 0;
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++) {
+        double v[3], arm[3];
+        vec3_sub(arm, b->vertex[i], r->position);
+        vec3_cross(v, r->angular_velocity, arm);
+        vec3_add_scaled(v, v, 1, r->velocity);
+        if (r->kind == TOBI_PRESCRIBED || b->swimmer) memcpy(v, b->vertex_velocity[i], sizeof v);
+        most = fmax(most, vec3_dot(v, v));
+    }
+    return sqrt(most);
+}
+
 /* What may help besides a smaller step. Liquid in a body that comes back lands in a layer beside it at once,
    crowded as it never is else: pressure throws it. */
 static void name_remedy(const tobi_system *s, double limit, char text[TOBI_NOTE])
 {
     const tobi_body *b = s->sim->bodies;
     for (int k = 0; k < s->sim->body_count; k++, b++) {
-        const double since = s->sim->time - b->absent[1];
+        const double since = s->sim->time - b->absent[1], speed = find_speed(b);
+        if (speed > limit) {
+            snprintf(text, TOBI_NOTE, tr(". Body '%s' moves at %.3g m/s: let its motion, motor or force "
+                     "begin at 0 and grow over time"), b->name, speed);
+            return;
+        }
         if (!(b->absent[1] > 0 && since >= 0 && since*limit < RETURN_REACH*s->smoothing.spacing)) continue;
         snprintf(text, TOBI_NOTE, tr(". Body '%s' has just come back, and the liquid in it was pushed out at "
                  "once: let a thick body come into liquid by a motion"), b->name);

@@ -48,7 +48,11 @@ static tobi_status note_jerk(tobi_world *w, tobi_body *b, tobi_error *err)
     TOBI_TRY(tobi_body_predict(b, 0, SOON, &after, err));
     pressing += 2*find_normal_speed(b);
     const double speed = 2*after - twice;            /* at once: an acceleration adds to the means */
-    if (b->rigid.kind != TOBI_PRESCRIBED || w->system[0].start_speed > 0) return TOBI_OK;
+    /* The shape of one that moves by forces: its own speed at the start is given. */
+    const double *v = b->rigid.velocity, *spin = b->rigid.angular_velocity;
+    const int forced = b->rigid.kind != TOBI_PRESCRIBED &&
+                       (!b->swimmer || vec3_dot(v, v) + vec3_dot(spin, spin) > 0);
+    if (forced || w->system[0].start_speed > 0) return TOBI_OK;
     /* Of wave makers stroke.c tells more. */
     if (b->motion == tobi_motion_positions && tobi_motion_waves(b->motion_user)) return TOBI_OK;
     if (!(pressing > fmax(JERK*sqrt(2*w->system[0].start_head), JERK*after))) return TOBI_OK;

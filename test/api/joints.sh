@@ -228,7 +228,7 @@ printf 'time,speed\n0,0.5\n0.04,2\n' > speeds.csv
 told slides.json "as large a force as it takes; a file that begins where the body is, or a force_max, lets it get there in time" \
     --set bodies.piston.guide.motor.file=speeds.csv
 for motor in '{"speed":12,"ramp":0.1}' '{"speed":12,"torque_max":3}' '{"speed":0}' '{"torque":3}' '{"speed":12,"start":0.02,"ramp":0.1}' \
-    '{"angle":0,"amplitude":10,"period":0.2,"ramp":0.1}' '{"angle":-10,"amplitude":10,"period":0.2,"phase":90}'; do
+    '{"angle":0,"amplitude":10,"period":0.2,"ramp":0.1}' '{"angle":10,"ramp":0.001}' '{"angle":-10,"amplitude":10,"period":0.2,"phase":90}'; do
     "$program" check motors.json --set joints.tail.motor="$motor" > out.txt 2>&1
     check "check does not tell of $motor" eval '! grep -q "its motor" out.txt'
 done
@@ -241,6 +241,9 @@ END2
 echo 'function deform(x, y, z, t) return x*(1 + t), y, z end' > swells.lua
 expect 0 "" check swells.json
 check "check tells bodies as they start" grep -q "^body  *bar: 40 kg/m, .*, inertia 0.5667 kg m2/m" out.txt
+check "and a swimmer that sets off at speed" grep -q "body 'bar': sets off at 0.2 m/s" out.txt
+expect 1 "Body 'flap' moves at 19.1 m/s: let its motion, motor or force begin at 0" check motors.json \
+    --set method=isph --set gravity='[0,0]' --set bodies.flap.hinge.motor='{"angle":0,"amplitude":60,"period":0.01}'
 check "resolved.json has the motors" grep -q '"amplitude": 300' whole/resolved.json
 
 "$program" check rafts.json --set joints.hinge.stiffness=1e9 > out.txt 2>&1
