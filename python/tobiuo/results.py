@@ -83,7 +83,7 @@ class Results:
             lib.tobi_moment_free(m)
 
     def sample(self, output, places, fields=None, fluid=None, threads=0, solid=None, body=None):
-        """Fields of the liquids of an output at places (m, k x 2 or k x 3): a Sample with `wet` and `fields`, as
+        """Fields of the liquids of an output at places (m, k x 3, in 2-D k x 2 too): a Sample with `wet` and `fields`, as
         "tobiuo sample" finds them. fields: names, of components too ("velocity_x"), without them all; fluid,
         solid: the name of one; body: places move and turn with it from where they are at the start, velocities are
         against it, vectors in its axes."""

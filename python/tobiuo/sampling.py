@@ -35,11 +35,13 @@ class Frame:
     spin: np.ndarray
 
 
-def _numbers(values, what, columns=None):
+def _numbers(values, what, columns=None, least=None):
     values = np.ascontiguousarray(values, dtype=np.float64)
     if columns is not None:
-        if values.ndim != 2 or values.shape[1] not in (columns, columns - 1):
-            raise ValueError(f"{what}: an array of {values.shape}, rows of {columns - 1} or {columns} numbers are allowed")
+        allowed = [n for n in (columns - 1, columns) if n >= (least or 0)]
+        if values.ndim != 2 or values.shape[1] not in allowed:
+            raise ValueError(f"{what}: an array of {values.shape}, rows of {' or '.join(map(str, allowed))} numbers "
+                             "are allowed")
         if values.shape[1] < columns:
             values = np.hstack([values, np.zeros((len(values), 1))])
     return values
@@ -51,10 +53,11 @@ def _points(values):
 
 def sample(places, positions, fields, spacing, box, dimension=3, periodic=(False, False, False), solids=None,
            threads=0):
-    """Fields (by name: n or n x components) of the particles at `positions` (m, n x 3) at places (m, k x 2 or
-    k x 3). spacing: m, of the particles. box: lower and upper corner of the domain, m. solids: points that fill
+    """Fields (by name: n or n x components) of the particles at `positions` (m, n x 3) at places (m, k x 3, in
+    2-D k x 2 too). spacing: m, of the particles. box: lower and upper corner of the domain, m. solids: points that fill
     bodies, m, about a spacing apart. Gives a Sample."""
-    places, positions = _numbers(places, "places", 3), _numbers(positions, "positions", 3)
+    places, positions = (_numbers(values, what, 3, dimension) for values, what in ((places, "places"),
+                                                                                   (positions, "positions")))
     solids = _numbers(np.empty((0, 3)) if solids is None else solids, "solids", 3)
     d = ffi.new("tobi_sample_def *", lib.tobi_default_sample())
     d.dimension, d.spacing, d.threads = dimension, spacing, threads
@@ -162,6 +165,7 @@ def of_scene(places, scene, moment, bodies, names, fluid=None, solid=None, threa
     finer = any((scene["spacing"] if isinstance(b["spacing"], str) else b["spacing"]) < 0.99*spacing
                 for b in scene.get("bodies", []))
     domain, parts = scene["domain"], {name: _split(moment, name) for name in names}
+    places = _numbers(places, "places", 3, scene["dimension"])
     if frames:
         places = move(places, *frames)
     found = sample(places, moment.positions[ours], {whole: moment.fields[whole][ours] for whole, _ in parts.values()},

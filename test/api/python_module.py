@@ -243,6 +243,8 @@ class Module(unittest.TestCase):
         self.assertTrue(found.wet.all())
         empty = tobiuo.sample(places, x[:0], {"height": x[:0, 2]}, 1/8, ([0, 0, 0], [1, 1, 1]))
         self.assertTrue(np.isnan(empty.fields["height"]).all() and not empty.wet.any())
+        with self.assertRaisesRegex(ValueError, r"places: an array of \(50, 2\), rows of 3 numbers are allowed"):
+            tobiuo.sample(places[:, :2], x, {"height": x[:, 2]}, 1/8, ([0, 0, 0], [1, 1, 1]))
         with self.assertRaisesRegex(ValueError, "height"):
             tobiuo.sample(places, x, {"height": x[:5, 2]}, 1/8, ([0, 0, 0], [1, 1, 1]))
         with self.assertRaisesRegex(tobiuo.Error, "spacing of 0 m"):
