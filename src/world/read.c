@@ -225,16 +225,26 @@ static tobi_status read_swimmer_velocity(tobi_body *b, double t, double (*out)[3
     return TOBI_OK;
 }
 
+/* Of a body without a motion: its velocity and its turn, both 0 of a fixed one. */
+static tobi_status read_rigid_velocity(tobi_body *b, double t, double (*out)[3], tobi_error *err)
+{
+    TOBI_TRY(tobi_body_place_particles(b, t, err));
+    for (int64_t i = 0; i < b->particle_count; i++) {
+        double arm[3];
+        vec3_sub(arm, b->particle[i], b->centre);
+        vec3_cross(out[i], b->rigid.angular_velocity, arm);
+        for (int a = 0; a < 3; a++) out[i][a] += b->rigid.velocity[a];
+    }
+    return TOBI_OK;
+}
+
 /* Velocities of a body's particles: central difference of its motion in double; no motion is asked for times
    before 0. */
 static tobi_status read_body_velocity(tobi_body *b, double t, double (*out)[3], tobi_error *err)
 {
     const double half = 1e-5, before = fmax(t - half, 0);
     if (b->swimmer) return read_swimmer_velocity(b, t, out, err);
-    if (!b->motion) {
-        memset(out, 0, (size_t)b->particle_count*sizeof *out);
-        return TOBI_OK;
-    }
+    if (!b->motion) return read_rigid_velocity(b, t, out, err);
     TOBI_TRY(tobi_body_place_particles(b, before, err));
     memcpy(out, b->particle, (size_t)b->particle_count*sizeof *out);
     TOBI_TRY(tobi_body_place_particles(b, t + half, err));

@@ -514,6 +514,38 @@ static void test_free_fall(void **state)
     }
 }
 
+/* Velocities that are read for the particles of a free body are those by which they move. */
+static void test_read_velocity(void **state)
+{
+    (void)state;
+    tobi_world_def def = tobi_default_world_def();
+    tobi_body_def b = tobi_default_body_def();
+    tobi_error err = { 0 };
+    tobi_world *w;
+    enum { MOST = 64 };
+    double at[3][3*MOST], v[3*MOST], worst = 0;
+    def.spacing = 0.1;
+    def.domain_max[0] = def.domain_max[1] = def.domain_max[2] = 4;
+    def.time_step = 0.001;
+    assert_int_equal(tobi_world_create(&def, NULL, &w, &err), TOBI_OK);
+    b.dynamics = TOBI_FREE;
+    for (int a = 0; a < 3; a++) b.box_max[a] = 0.3, b.translation[a] = 2;
+    memcpy(b.velocity, (double[3]){ 1, -2, 0.5 }, sizeof b.velocity);
+    memcpy(b.angular_velocity, (double[3]){ 3, 2, -4 }, sizeof b.angular_velocity);
+    assert_int_equal(tobi_world_add_body(w, &b, &err), TOBI_OK);
+    const int n = (int)tobi_world_count(w, TOBI_BODIES);
+    assert_in_range(n, 8, MOST);
+    for (int k = 0; k < 3; k++) {
+        assert_int_equal(tobi_world_advance(w, 0.1 + 0.001*k, NULL, &err), TOBI_OK);
+        assert_int_equal(tobi_world_read(w, TOBI_BODIES, "position", at[k], MOST, &err), TOBI_OK);
+        if (k == 1) assert_int_equal(tobi_world_read(w, TOBI_BODIES, "velocity", v, MOST, &err), TOBI_OK);
+    }
+    for (int k = 0; k < 3*n; k++) worst = fmax(worst, fabs((at[2][k] - at[0][k])/0.002 - v[k]));
+    print_message("particles of a thrown box: velocities read within %.2g m/s\n", worst);
+    assert_true(worst < 1e-3);
+    tobi_world_destroy(w);
+}
+
 int main(void)
 {
     char folder[] = "/tmp/tobiuo_rigid_XXXXXX";
@@ -524,6 +556,7 @@ int main(void)
         cmocka_unit_test(test_search_given_up), cmocka_unit_test(test_changed_matter),
         cmocka_unit_test(test_balls_overlap), cmocka_unit_test(test_plane),
         cmocka_unit_test(test_projectile), cmocka_unit_test(test_free_fall),
+        cmocka_unit_test(test_read_velocity),
     };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
