@@ -25,7 +25,8 @@ READER_ONLY = re.compile(
     r"must be greater|is zero|already the name|cannot find|has 2 entries|reaches from|overlaps|"
     r"must not be above|periodic on one side|more than \d+ outputs|the domain has only|"
     r"params belong|in a 2-D scene|not no-slip|along the side|the domain reaches|"
-    r"there is no (column|body|probe) |without one the view fits|is for a vessel")
+    r"there is no (column|body|probe) |without one the view fits|is for a vessel|"
+    r"without one nothing is cut off|is not below picture.max")
 
 
 def call(program, *arguments):

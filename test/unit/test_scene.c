@@ -113,6 +113,15 @@ static void two_dimensions_take_two_numbers(void **state)
     w = tobi_scene_world_def(scene);
     assert_true(w->gravity[0] == 0.5 && w->gravity[1] == 0 && w->gravity[2] == 0);
     tobi_scene_free(scene);
+    const char *cut[] = { "output.picture.clip_normal=[0, 0, 1]", NULL };
+    tobi_report *report = NULL;
+    tobi_error err = { 0 };
+    scene = NULL;
+    assert_true(tobi_scene_parse("s.json", plane, strlen(plane), cut, &scene, &report, &err) != TOBI_OK);
+    assert_null(scene);
+    assert_non_null(report);
+    assert_non_null(strstr(tobi_report_line(report, 0), "points out of the plane of the 2-D scene"));
+    tobi_report_free(report);
 }
 
 /* Every number and word of two scenes is the same. */
