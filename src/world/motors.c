@@ -256,32 +256,38 @@ static tobi_status find_rate(const tobi_motor_source *m, double t, double soon, 
     return TOBI_OK;
 }
 
-/* A jump at time t of a motor that is as strong as it must be: of its place, or else of its speed. */
-static tobi_status note_jump(tobi_world *w, const tobi_motor_source *m, double t, tobi_error *err)
+/* At time t a motor that is as strong as it must be asks at once for a place, or for a speed. */
+static tobi_status note_asked(tobi_world *w, const tobi_motor_source *m, double t, double asked, int speed,
+                              tobi_error *err)
 {
-    const tobi_constraint *j = &w->sim.constraints.at[m->joint];
-    const double soon = SOON*(1 + t), unit = m->slides ? 1 : 180/acos(-1);
-    int speed = m->kind == TOBI_MOTOR_SPEED;
-    double before, after, rate[2] = { 0 };
     char text[TOBI_NOTE];
-    TOBI_TRY(find_value(m, t > 0 ? t - soon : 0, &before, err));
-    TOBI_TRY(find_value(m, t + soon, &after, err));
-    if (t > 0 && !speed) TOBI_TRY(find_rate(m, t, -soon, &rate[0], err));
-    if (!speed) TOBI_TRY(find_rate(m, t, soon, &rate[1], err));
-    int jumps = fabs(after - before - soon*(rate[0] + rate[1])) > JUMP;
-    if (t == 0) rate[0] = unit*tobi_constraint_rate(j, w->sim.bodies);
-    if (t == 0 && speed) jumps = fabs(after - rate[0]) > JUMP;
-    if (!speed && !jumps && fabs(rate[1] - rate[0]) > KICK) {
-        after = rate[1];
-        speed = jumps = 1;
-    }
-    if (!jumps) return TOBI_OK;
     snprintf(text, sizeof text, tr("its motor asks for %.4g %s%s at %.4g s: the body %s that in one step, by "
-             "as large a %s as it takes; %s, or a %s, lets it get there in time\n"), after,
+             "as large a %s as it takes; %s, or a %s, lets it get there in time\n"), asked,
              words[m->slides].unit,
              speed ? "/s" : "", t, speed ? tr("has") : tr("goes"), words[m->slides].load,
              m->rows ? tr("a file that begins where the body is") : tr("a ramp"), words[m->slides].most);
-    return tobi_world_add_notes(w, m->body < 0 ? "joint" : "body", j->name, text, err);
+    return tobi_world_add_notes(w, m->body < 0 ? "joint" : "body", w->sim.constraints.at[m->joint].name, text,
+                                err);
+}
+
+/* A jump of a speed at time t; of a place, or else of its rate. At the start from what the joint has. */
+static tobi_status note_jump(tobi_world *w, const tobi_motor_source *m, double t, tobi_error *err)
+{
+    const tobi_constraint *j = &w->sim.constraints.at[m->joint];
+    const double soon = SOON*(1 + t);
+    const double own = tobi_constraint_rate(j, w->sim.bodies)*(m->slides ? 1 : 180/acos(-1));
+    double before, after, slope, rate = 0;
+    TOBI_TRY(find_value(m, t > 0 ? t - soon : 0, &before, err));
+    TOBI_TRY(find_value(m, t + soon, &after, err));
+    if (m->kind == TOBI_MOTOR_SPEED) {
+        const double jump = after - (t > 0 ? before : own);
+        return fabs(jump) > JUMP ? note_asked(w, m, t, after, 1, err) : TOBI_OK;
+    }
+    if (t > 0) TOBI_TRY(find_rate(m, t, -soon, &rate, err));
+    TOBI_TRY(find_rate(m, t, soon, &slope, err));
+    if (fabs(after - before - soon*(rate + slope)) > JUMP) return note_asked(w, m, t, after, 0, err);
+    if (t == 0) rate = own;
+    return fabs(slope - rate) > KICK ? note_asked(w, m, t, slope, 1, err) : TOBI_OK;
 }
 
 tobi_status tobi_motors_note(tobi_world *w, tobi_error *err)

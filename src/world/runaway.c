@@ -7,7 +7,6 @@
 #include "geom/vec3.h"
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 /* Which key of the scene makes steps shorter, and its value. */
 static const char *name_cfl(const tobi_system *s, double *value)
@@ -27,14 +26,15 @@ static const double CROWDED = 0.8;
 static double find_speed(const tobi_body *b)
 {
     const tobi_rigid *r = &b->rigid;
+    const int moved = r->kind == TOBI_PRESCRIBED || b->swimmer;     /* with velocities of its corners */
     double most = 0;
     for (int64_t i = 0; i < b->mesh.vertex_count; i++) {
         double v[3], arm[3];
         vec3_sub(arm, b->vertex[i], r->position);
         vec3_cross(v, r->angular_velocity, arm);
         vec3_add_scaled(v, v, 1, r->velocity);
-        if (r->kind == TOBI_PRESCRIBED || b->swimmer) memcpy(v, b->vertex_velocity[i], sizeof v);
-        most = fmax(most, vec3_dot(v, v));
+        const double *corner = moved ? b->vertex_velocity[i] : v;
+        most = fmax(most, vec3_dot(corner, corner));
     }
     return sqrt(most);
 }
